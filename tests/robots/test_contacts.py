@@ -9,6 +9,8 @@ import stiffmbs
 from stiffmbs.robots.effective_mass import inverse_masses
 from stiffmbs.robots.load import load_robot
 from stiffmbs.robots.mjcf.model import read_mjcf
+from stiffmbs.robots.overlaps import Overlaps
+from stiffmbs.robots.scene.contacts import parts
 from tests.random_trees import free_tree_in_mjcf, tree_in_mjcf
 
 G = 9.81
@@ -260,6 +262,25 @@ def test_pairs_and_their_stiffness_are_those_of_mujoco(tmp_path, seed):
     assert found.keys() == expected.keys()
     for pair, values in expected.items():
         assert found[pair] == pytest.approx(values, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_overlaps_are_the_penetrations_of_mujoco(tmp_path, seed):
+    """Shapes of any kind at random, above and below the floor, and in each other."""
+    rng, path = np.random.default_rng(seed), tmp_path / "tree.xml"
+    path.write_text(dropped_tree(rng, 5).replace("0 0 0.6", "0 0 0.1").replace("<worldbody>", "<option/><worldbody>"))
+    robot, m = read_mjcf(path, contacts=True), mujoco.MjModel.from_xml_path(str(path))
+    d, at = mujoco.MjData(m), Overlaps(robot, {})
+    mujoco.mj_forward(m, d)
+    deepest = {}
+    for contact in d.contact:
+        pair = frozenset(m.geom(int(geom)).name for geom in contact.geom)
+        deepest[pair] = max(deepest.get(pair, 0.0), -contact.dist)
+    for contact in robot.contacts:
+        expected = deepest.get(frozenset((contact.first.name, contact.second.name)), 0.0)
+        found = max(at.of(i, j) for _, _, i, j in parts(contact))
+        if "plane" in (contact.first.kind, contact.second.kind) or expected < contact.first.size[0]:  # else: its middle
+            assert max(found, 0.0) == pytest.approx(expected, abs=1e-6)
 
 
 SPIDER = """<mujoco><option cone="elliptic" timestep="1e-3"/><default><geom condim="1" solimp="0.9 0.9 0.01"/>

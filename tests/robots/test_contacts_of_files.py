@@ -195,7 +195,7 @@ def test_notes_on_contacts_that_are_left_out(tmp_path):
     )
     found = said(mjcf, "--contacts")
     assert "contacts have no rolling and drilling friction: foot" in found
-    assert "shapes start in the ground, which pushes them out: foot_on_geom_0 by 0.05 m" in found
+    assert "shapes that overlap at the start are pushed apart: foot_on_geom_0 by 0.05 m" in found
     assert "left out: 1 of ellipsoid and sphere" in found
     assert "contacts between the shapes of MJCF are left out (convert --contacts adds them)" in said(mjcf)
 

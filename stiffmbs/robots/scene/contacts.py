@@ -14,7 +14,7 @@ from ...reading.files.quoted import listed
 from ...reading.files.yaml_text import Content
 from ..contact import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Shape
 from ..effective_mass import inverse_masses
-from ..pose import WORLD, frames
+from ..overlaps import Overlaps
 from ..robot import GRAVITY, Robot
 from .mechanism import Mechanism
 
@@ -46,20 +46,20 @@ def contacts(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float
     names = {name: mechanism.names.take(name) for name in CONTACTS}
     found.parameters = {names[name]: plain(value) for name, value in CONTACTS.items()}
     inverse = inverse_masses(robot, coordinates)
-    heights = _Heights(robot, coordinates)
+    overlaps = Overlaps(robot, coordinates)
     for contact in robot.contacts:
         first, second = contact.first, contact.second
         mobility = inverse[first.link] + inverse[second.link]
         if not mobility > 0 or mechanism.seats[first.link].body == mechanism.seats[second.link].body:
             continue
         law, depth = _law(contact, 1.0 / mobility, names)
-        for kind, fields, i, j in _parts(contact):
+        for kind, fields, i, j in parts(contact):
             name = mechanism.names.take(f"{i.name}_on_{j.name}")
             found.forces[name] = {"type": kind, "i": markers.of(i), "j": markers.of(j), **fields, **law}
-            if j.kind == PLANE and (below := heights.below(i, j)) > 2.0 * depth:
-                deep.append(f"{name} by {below:.3g} m")
+            if (inside := overlaps.of(i, j)) > 2.0 * depth:
+                deep.append(f"{name} by {inside:.3g} m")
     if deep:
-        found.notes = [f"shapes start in the ground, which pushes them out: {listed(deep)}"]
+        found.notes = [f"shapes that overlap at the start are pushed apart: {listed(deep)}"]
     return found
 
 
@@ -81,7 +81,7 @@ Part = tuple[str, Content, Shape, Shape]
 """Kind of a force with its fields of geometry, and the shapes of markers i and j."""
 
 
-def _parts(contact: Contact) -> Iterator[Part]:
+def parts(contact: Contact) -> Iterator[Part]:
     """Yield the forces of a contact: two for a capsule, one for other shapes."""
     first, second = contact.first, contact.second
     if first.kind == PLANE or (first.kind != second.kind and second.kind == SPHERE):
@@ -145,30 +145,3 @@ class _Markers:
             name = self._mechanism.names.take(shape.name, "shape")
             self._found[shape] = self._mechanism.mark(shape.link, name, shape.position, shape.orientation)
         return self._found[shape]
-
-
-class _Heights:
-    """Heights of shapes above planes at the start."""
-
-    def __init__(self, robot: Robot, coordinates: Mapping[str, float]) -> None:
-        placed = frames(robot, coordinates, {})
-        self._frames = {None: WORLD} | {name: each[-1] for name, each in placed.items()}
-
-    def below(self, shape: Shape, plane: Shape) -> float:
-        """Return the depth of a shape's lowest point below a plane, m; negative above it."""
-        frame, ground = self._frames[shape.link], self._frames[plane.link]
-        normal = rotated(ground.orientation, tuple(rotated(plane.orientation, (0.0, 0.0, 1.0))))
-        axes = [rotated(frame.orientation, tuple(rotated(shape.orientation, tuple(axis)))) for axis in np.eye(3)]
-        cosines = np.array([float(np.dot(axis, normal)) for axis in axes])
-        middle = frame.point(shape.position) - ground.point(plane.position)
-        return _reach(shape, cosines) - float(np.dot(middle, normal))
-
-
-def _reach(shape: Shape, cosines: np.ndarray) -> float:
-    """Return the distance of a shape's middle from a plane that it touches. `cosines`: the normal in its axes."""
-    size = np.array(shape.size)
-    if shape.kind == BOX:
-        return float(np.abs(cosines) @ size) / 2.0
-    if shape.kind == CYLINDER:
-        return float(size[0] * np.hypot(*cosines[:2]) + size[1] / 2.0 * abs(cosines[2]))
-    return float(np.linalg.norm(cosines * size))
