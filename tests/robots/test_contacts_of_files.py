@@ -159,6 +159,27 @@ def test_shapes_of_urdf_rest_on_a_stated_ground(tmp_path, shape):
     assert found["base.z"][-1] == pytest.approx(0.25 - 0.03 + height - depth, abs=1e-6)
 
 
+FOOT = """<link name="foot"><collision name="toe"><geometry><sphere radius="0.1"/></geometry></collision></link>
+<joint name="ankle" type="{kind}"><parent link="base"/><child link="foot"/><origin xyz="0 0 -0.2"/><axis xyz="0 1 0"/></joint>"""
+
+
+@pytest.mark.parametrize("kind", ["fixed", "continuous"])
+def test_a_foot_without_mass_carries_its_link(tmp_path, kind):
+    """Its joint moves no mass. The contact has the effective mass of the link at the foot, the mean over three directions."""
+    found = load_robot(robot(tmp_path, "", FOOT.format(kind=kind)), ground=0.0)
+    (contact,) = found.forces.values()
+    assert contact.i.body == "base"
+    mobility = (3 / 2 + 2 * 0.2**2 / 0.01) / 3
+    assert contact.stiffness == pytest.approx(1 / mobility / (0.05 * 0.02**2))
+
+
+def test_links_that_are_fixed_to_ground_have_no_contact(tmp_path):
+    collision = f"<collision><geometry>{URDF_SHAPES['box'][0]}</geometry></collision>"
+    path = robot(tmp_path, collision)
+    path.write_text(path.read_text().replace('type="floating"', 'type="fixed"'))
+    assert not load_robot(path, ground=0.0).forces
+
+
 def test_surfaces_of_gazebo_in_urdf(tmp_path):
     given = '<gazebo reference="base"><mu1>0.25</mu1><kp value="3e4"/><kd value="1"/><plugin name="p"/></gazebo>'
     path = robot(tmp_path, f"<collision name='c'><geometry>{URDF_SHAPES['box'][0]}</geometry></collision>", given)
