@@ -15,7 +15,7 @@ from ..model.scene import Scene
 from ..reading.files.text_file import file_text, source_name
 from ..reading.files.xml_nodes import FileFault
 from ..reading.files.yaml_text import scene_text
-from .robot import Robot
+from .robot import Robot, RobotFault
 from .scene.scene import scene
 
 URDF, SDF = ".urdf", (".sdf", ".world")
@@ -32,6 +32,7 @@ def load_robot(
     limits: bool = False,
     contacts: bool = False,
     ground: float | None = None,
+    free_root: bool = False,
 ) -> Scene:
     """Read a scene from a robot file.
 
@@ -49,13 +50,15 @@ def load_robot(
         True for contacts of the shapes that may touch according to the file (`stiffmbs.robots.scene.contacts`). By default there are none.
     ground : float, optional
         Height of an added ground plane, m, which all shapes touch; `contacts` is then True.
+    free_root : bool, optional
+        True if the root link of a URDF file moves freely. By default it is fixed to ground.
 
     Raises
     ------
     InputError
         If the file cannot be read, or its robot is not a valid scene.
     """
-    found = _found(path, coordinates, rates, limits, contacts, ground)
+    found = _found(path, coordinates, rates, limits, contacts, ground, free_root)
     return made_scene(found, changes, source_name(path), lambda _: None)
 
 
@@ -67,9 +70,10 @@ def convert_robot(
     limits: bool = False,
     contacts: bool = False,
     ground: float | None = None,
+    free_root: bool = False,
 ) -> str:
     """Return the scene of a robot file as the text of a scene file; parameters and errors as `load_robot`."""
-    how = (coordinates, rates, limits, contacts, ground)
+    how = (coordinates, rates, limits, contacts, ground, free_root)
     made_scene(_found(path, *how), (), source_name(path), lambda _: None)  # raises errors of the scene
     return scene_text(_found(path, *how))
 
@@ -81,9 +85,10 @@ def _found(
     limits: bool,
     contacts: bool,
     ground: float | None,
+    free_root: bool,
 ) -> dict[str, object]:
     try:
-        return scene(_read(path, contacts or ground is not None, ground), coordinates, rates, limits)
+        return scene(_read(path, contacts or ground is not None, ground, free_root), coordinates, rates, limits)
     except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
     except RecursionError:
@@ -92,11 +97,15 @@ def _found(
         raise InputError(f"{source_name(path)}: {BEYOND}") from None
 
 
-def _read(path: str | Path, contacts: bool, ground: float | None) -> Robot:
+def _read(path: str | Path, contacts: bool, ground: float | None, free_root: bool) -> Robot:
     if Path(path).suffix.lower() == URDF:
         from .urdf import read_urdf
 
-        return read_urdf(file_text(path), contacts, ground)
+        return read_urdf(file_text(path), contacts, ground, free_root)
+    if free_root:
+        raise RobotFault(
+            "found that the root is free, expected it with a URDF file: other formats state which links move"
+        )
     if Path(path).suffix.lower() in SDF:
         from .sdf.read import read_sdf
 

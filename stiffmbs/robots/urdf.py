@@ -40,12 +40,11 @@ WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
 """Reasons if the shapes of contacts are read."""
 
 
-def read_urdf(text: str, contacts: bool = False, ground: float | None = None) -> Robot:
+def read_urdf(text: str, contacts: bool = False, ground: float | None = None, free_root: bool = False) -> Robot:
     """Read a robot from the text of a URDF file.
 
     `contacts`: True to read the shapes of ``<collision>``. `ground`: height of the plane that they touch, m.
-
-    The root link is fixed to ground. Joints with a ``<transmission>`` have an effort as input. If the file has no
+    `free_root`: True if the root link moves freely; by default it is fixed to ground. Joints with a ``<transmission>`` have an effort as input. If the file has no
     transmission, joints with a positive effort limit have one. Raises RobotFault if the text is not URDF, or its links
     and joints are not a tree; names the link or joint.
     """
@@ -59,11 +58,11 @@ def read_urdf(text: str, contacts: bool = False, ground: float | None = None) ->
     moving = [name for name in child_of.values() if joints[name].get("type") != FIXED]
     read: dict[str, Any] = {
         "name": root.get("name") or "robot",
-        "links": tuple(_link(name, links[name], child_of.get(name), joints) for name in ordered),
+        "links": tuple(_link(name, links[name], child_of.get(name), joints, free_root) for name in ordered),
         "transmissions": tuple(_efforts(root, {name: joints[name] for name in moving})),
         "relations": tuple(_mimics(joints, child_of)),
     }
-    own = [f"the root link {ordered[0]} is fixed to ground", *_still(joints)]
+    own = [f"the root link {ordered[0]} {'moves freely' if free_root else 'is fixed to ground'}", *_still(joints)]
     if contacts:
         read["contacts"], of_contacts = touching(root, links, ground)
         own += of_contacts
@@ -134,10 +133,11 @@ def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: di
     return ordered
 
 
-def _link(name: str, element: Node, joint: str | None, joints: dict[str, Node]) -> Link:
+def _link(name: str, element: Node, joint: str | None, joints: dict[str, Node], free_root: bool) -> Link:
     mass, centre, inertia = _inertial(name, element.find("inertial"))
     if joint is None:
-        return Link(name, None, mass=mass, center_of_mass=centre, inertia=inertia)
+        free = (LinkJoint(f"{name}_free", "free"),) if free_root else ()
+        return Link(name, None, mass=mass, center_of_mass=centre, inertia=inertia, joints=free)
     carrier = joints[joint]
     position, orientation = origin(f"joint {joint}", carrier)
     return Link(

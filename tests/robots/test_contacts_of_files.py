@@ -180,6 +180,19 @@ def test_links_that_are_fixed_to_ground_have_no_contact(tmp_path):
     assert not load_robot(path, ground=0.0).forces
 
 
+def test_a_free_root_falls_to_the_ground(tmp_path):
+    """Robots that walk have no floating joint in their files."""
+    path = robot(tmp_path, f"<collision><geometry>{URDF_SHAPES['sphere'][0]}</geometry></collision>")
+    text = path.read_text().replace('<link name="world"/>', "")
+    path.write_text(text[: text.index("<joint")] + "</robot>")
+    assert "the root link base moves freely" in said(path, "--ground", "-0.3", "--free-root")
+    assert "the root link base is fixed to ground" in said(path)
+    found = stiffmbs.run(load_robot(path, ground=-0.3, free_root=True), duration=1.0)
+    assert found["base.z"][-1] == pytest.approx(-0.3 + 0.1 - 9.81 * 0.05 * 0.02**2, abs=1e-6)
+    with pytest.raises(InputError, match="found that the root is free, expected it with a URDF file"):
+        load_robot(world(tmp_path, floor(), ball()), free_root=True)
+
+
 def test_surfaces_of_gazebo_in_urdf(tmp_path):
     given = '<gazebo reference="base"><mu1>0.25</mu1><kp value="3e4"/><kd value="1"/><plugin name="p"/></gazebo>'
     path = robot(tmp_path, f"<collision name='c'><geometry>{URDF_SHAPES['box'][0]}</geometry></collision>", given)
@@ -254,6 +267,6 @@ def test_wrong_collisions_of_sdf_are_refused(tmp_path, old, new, message):
 
 
 def test_options_of_robots_are_refused_with_other_files():
-    for option in (["--contacts"], ["--ground", "0"]):
+    for option in (["--contacts"], ["--ground", "0"], ["--free-root"]):
         found = CliRunner().invoke(main, ["convert", "scene.yaml", *option])
         assert found.exit_code == 2 and f"found {option[0]}, expected it with a robot alone" in found.output
