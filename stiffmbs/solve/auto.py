@@ -200,13 +200,14 @@ def _driver(name: str) -> dict[str, Any]:
 class ImplicitCheck:
     """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
-    `rate`: cost of implicit steps per second of the motion in the last interval. `loss`: cost in excess of explicit
-    steps, since it was last lower.
+    `rate`: cost of implicit steps per second of the motion in this segment. `loss`: cost in excess of explicit steps,
+    since it was last lower.
     """
 
     def __init__(self, run: _AutoRun, t: float) -> None:
         self._run, self._implicit = run, run.implicit
         self._counted, self._begun = self._implicit.steps(t), self._implicit.engine.steps()
+        self._first = self._counted
         self.rate, self.loss = np.inf, 0.0
         self._intervals: deque[Interval] = deque(maxlen=3)
         self._wait()
@@ -218,9 +219,9 @@ class ImplicitCheck:
             return True  # an event between two checks
         counted = self._implicit.steps(t)
         taken, self._counted = counted.since(self._counted), counted
-        self.rate = taken.cost / taken.time
+        self.rate = counted.since(self._first).rate
         self.loss = max(self.loss + taken.cost - run.explicit_cost(taken.time, taken.restarts, taken.long), 0.0)
-        gains = self._gains(Interval(t - 0.5 * taken.time, self.rate))
+        gains = self._gains(Interval(t - 0.5 * taken.time, taken.rate))
         return self._wait() > 0.0 or gains
 
     def _gains(self, last: Interval) -> bool:
@@ -402,7 +403,7 @@ class _AutoRun:
         if not steps.limited or segment.cost < self._penalty:
             return False
         t, share = work.t, steps.limited / steps.accepted
-        saving = share * steps.cost * self.remaining(t) / steps.time
+        saving = share * steps.rate * self.remaining(t)
         if not saving > self._justifying(t):
             return False
         rates = rates_at(self._dynamics, t, work.q.copy(), work.u.copy())
@@ -414,11 +415,10 @@ class _AutoRun:
 
     def _returns(self, steps: Counted, t: float) -> bool:
         """Return True to resume the implicit integrator, because explicit steps cost more."""
-        rate = steps.cost / steps.time
-        if not self.remaining(t) * (rate - self._return_ratio * self._implicit_rate) > self.implicit.start:
+        if not self.remaining(t) * (steps.rate - self._return_ratio * self._implicit_rate) > self.implicit.start:
             return False
         self._return_ratio *= 2.0
-        return self._switched(f" again from t = {t:.4g} s on (explicit steps cost more)", rate)
+        return self._switched(f" again from t = {t:.4g} s on (explicit steps cost more)", steps.rate)
 
     def _confirmed(self, pays: Callable[[], bool]) -> bool:
         """Return True if implicit steps pay, first by lower bounds of their cost, then by that with their linear solver."""

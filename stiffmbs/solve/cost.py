@@ -164,3 +164,8 @@ class Counted(NamedTuple):
     def since(self, before: Counted) -> Counted:
         """Return the steps taken after an earlier count."""
         return Counted._make(now - then for now, then in zip(self, before, strict=True))
+
+    @property
+    def rate(self) -> float:
+        """Cost per second of the motion."""
+        return self.cost / self.time

@@ -100,17 +100,17 @@ class Integrator(Generic[E]):
                     before = t = t + 2.0 * grid.aside
                     yield from self._at_once(reached.t, t, grid, (q, u))
                     q = self.dynamics.system.of_body.moved(q, 2.0 * grid.aside * u)
-                t = self._restarted(q, u, t, self._ahead(reached, stops[0]), chattering)
+                t = self._restarted(q, u, t, self._ahead(reached, stops[0]), stops[0], chattering)
                 if not at_breakpoint:
                     state = self.dynamics.state
                     yield from self._at_once(before, t, grid, (state.q, state.u))
                 self._events += not at_breakpoint
                 self._breakpoints += at_breakpoint
 
-    def _restarted(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, chattering: Chattering) -> float:
-        """Restart at t from a state, past events within `ahead`; return the time of the start."""
+    def _restarted(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float, chattering: Chattering) -> float:
+        """Restart at t from a state, past events within `ahead`; return the time of the start, before the next stop."""
         self.engine.watch.watch_for(self._hovering.band)
-        begun, state = self.engine.begin_restart(q, u, t, ahead), self.dynamics.state
+        begun, state = self.engine.begin_restart(q, u, t, ahead, stop), self.dynamics.state
         if self._hovering.taken_back(begun.t):
             self.engine.watch.watch_for(self._hovering.band)
         self._started()

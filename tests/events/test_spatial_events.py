@@ -76,3 +76,23 @@ def test_an_elastic_ball_keeps_its_energy_through_all_its_impacts():
     assert found.solver["events"] >= 12
     assert found.energy_drift() < 1e-7
     np.testing.assert_allclose(found["ball.q0"], 1, atol=1e-15)
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-4])
+def test_a_projection_back_before_an_event_is_passed_with_it(rtol):
+    """A double pendulum on a stop: its drift at loose tolerances is no event of its own."""
+    text = """
+    dimensions: 3
+    gravity: [0, 0, -9.81]
+    bodies:
+      a: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [1, 0, 0]}
+      b: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [2, 1, 0]}
+    joints:
+      shoulder: {type: spherical, i: {body: a, point: [-1, 0, 0]}, j: ground}
+      elbow: {type: spherical, i: {body: b, point: [0, -1, 0]}, j: {body: a, point: [1, 0, 0]}}
+    forces:
+      stop: {type: force, i: b, force: [0, 0, "max(0, -1e5*(b.z + 1.5))"]}
+    """
+    solution = stiffmbs.run(stiffmbs.read_scene(text), solver="bdf", rtol=rtol, duration=5.0)
+    height = stiffmbs.run(stiffmbs.read_scene(text), solver="projected", rtol=1e-8, duration=5.0, points=20001)["b.z"]
+    assert solution.solver["events"] == np.count_nonzero(np.diff(np.sign(height + 1.5)))

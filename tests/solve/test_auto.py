@@ -210,6 +210,13 @@ def test_a_trial_that_costs_more_than_explicit_steps_is_left_early():
     assert "projected again" in note
 
 
+@pytest.mark.long
+def test_steps_that_were_costly_for_an_interval_are_resumed():
+    """A jump of the steering makes the steps of radau short for 0.2 s; explicit steps to the end of the run are twenty times as many."""
+    solution = stiffmbs.run(CARS[0].model("step"), solver="auto", rtol=1e-6)
+    assert solution.solver["steps"] < 1500
+
+
 def test_the_cost_ahead_follows_the_decay_of_a_vibration():
     """The rate halves each second; it is compared with a sum over short intervals. A rate that does not fall stays."""
     t = np.linspace(2.5, 5.5, 3001)

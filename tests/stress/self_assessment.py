@@ -49,6 +49,8 @@ FALSE = 3.0
 FAR_BELOW = 5.0
 """An estimate is far too small if the true error is more than so many times as large, without a note."""
 NOTE = "the estimated error of"
+SEVERAL = "passes a singular pose"
+"""Begin of the note on a pose from which several motions go on: none of them is the truth."""
 FACTORS = {"bdf": (3, 0.9), "radau": (3, 0.9), "projected": (4, 0.8)}
 """Factor within which the errors of positions are to be right, and in what share of runs, by integrator."""
 FORCES = 5, 0.8
@@ -116,7 +118,7 @@ def assess(scene: Scene, how: Mapping[str, Any], truths: Sequence[Solution] | No
     noted = any(note.startswith(NOTE) or "solution is lost" in note for note in found.notes)
     solver = next((name for name in FACTORS if name in str(found.solver.get("name"))), str(found.solver.get("name")))
     nothing = Assessment("no truth", {}, {}, noted, rtol, solver)
-    if not found.success or found.estimate is None:
+    if not found.success or found.estimate is None or any(note.startswith(SEVERAL) for note in found.notes):
         return nothing
     others = references(scene, how) if truths is None else truths
     fine = [errors_of(found, other) for other in others]

@@ -72,7 +72,7 @@ class AdaptiveSteps(Engine):
         self.work.t = t
         self.work.begin(start)
 
-    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun:
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float) -> Begun:
         """See `Engine`. Steps end after an event. Only some restarts at events are checked for chattering forces."""
         state, steps, at_event = self._dynamics.state, self.work.count("steps"), self._status == AT_EVENT
         start = restarted(self._dynamics, t, q, u, self._settings.projection)

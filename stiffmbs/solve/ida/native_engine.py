@@ -132,10 +132,10 @@ class NativeEngine(Engine):
         self._starts.begin(start, t, self.ida.begun, self._order.order)
         self._take_up(t)
 
-    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun:
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float) -> Begun:
         """See `Engine`."""
         self.ida.error_norm.filter_always(self._order.held)
-        found = self._starts.restart((q, u), t, ahead, self.ida.begun, self._order.order)
+        found = self._starts.restart((q, u), t, ahead, stop, self.ida.begun, self._order.order)
         if found is None:  # a force is beyond its limits, unless this raises
             start = restarted(self._dynamics, t, q, u)
             refuse_beyond_limits(self._dynamics, t, start.q, start.u)

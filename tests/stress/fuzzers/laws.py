@@ -24,6 +24,8 @@ LEAST, OF_TOLERANCE, MOST = 2e-4, 200.0, 0.01
 """Error of an impulse or work that is right: the least one, in relative tolerances (or one for each step), and the most besides twice that."""
 FASTER = 1.5
 """Times its speed at the start that a mass moves at most: its work is at most half of m v^2."""
+OF_ESTIMATE = 2.0
+"""Error in that which the run itself estimates, up to which it is told."""
 REPORTED = "do not resolve it", "the estimated error of", "solution is lost"
 """Words of the notes on laws that change faster than steps are taken, and on estimated errors."""
 
@@ -116,13 +118,15 @@ def _judged(
     found = float(solution[channel][-1])
     if expected is None:
         work = size * law.integral(start, float(solution["b.x"][-1]))
-        error = abs(0.5 * found**2 - 0.5 - work) / max(work, 0.5)
+        error, by_speed = abs(0.5 * found**2 - 0.5 - work) / max(work, 0.5), abs(found) / max(work, 0.5)
     else:
-        error = abs(found - expected)
+        error, by_speed = abs(found - expected), 1.0
     of_tolerance = max(OF_TOLERANCE, float(solution.solver["steps"])) * how["rtol"]
     allowed = LEAST + min(of_tolerance, MOST) + 2.0 * how["rtol"]
     if error > allowed and any(words in note for note in solution.notes for words in REPORTED):
         return told("; ".join(solution.notes), ())
+    if error > allowed and solution.estimate and error <= OF_ESTIMATE * by_speed * solution.errors[channel].over_time:
+        return told(solution.estimate.sentence, ())
     return measured(error, allowed, f"{solution.solver['steps']} steps, found {found:.6g}, {detail}")
 
 

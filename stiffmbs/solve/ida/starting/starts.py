@@ -31,7 +31,7 @@ START_MODULE, RESTART_MODULE = (f"stiffmbs.solve.ida.starting.native.{name}" for
 _START, _RESUME = together(
     START_MODULE, SHORT, start="int32(float64, int64, int64, int64*)", resume="int32(float64, int64, int64*)"
 )
-RESTARTED = Routine(RESTART_MODULE, "restarted_at_event", "int32(float64, float64, int64, int64, int64*)", level=SHORT)
+RESTARTED = Routine(RESTART_MODULE, "restarted_at_event", "int32(float64, float64, float64, int64, int64, int64*)", level=SHORT)
 ADVANCE = Routine(RESTART_MODULE, "advance_from", "int32(float64, float64, int64, int64*)")
 FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "reinitialise": "IDAReInit", "set_first_step": "IDASetInitStep",
@@ -98,16 +98,16 @@ class Starts:
         return self._at
 
     def restart(
-        self, state: tuple[np.ndarray, np.ndarray], t: float, ahead: float, counted: bool, highest_order: int
+        self, state: tuple[np.ndarray, np.ndarray], t: float, ahead: float, stop: float, counted: bool, highest_order: int
     ) -> Begun | None:
         """Restart at consistent values after a state.
 
-        `state` of shapes (n_q,), (n_u,). `t`: s. `ahead`: time of extrapolation past events simultaneous with the one
-        at t, s; 0 for none. `counted`: true if IDA's counters belong to this run. Returns None, without a start, if
+        `state` of shapes (n_q,), (n_u,). `t`: s. `ahead`: least time of extrapolation past events simultaneous with
+        the one at t, s; 0 for none. `stop`: next time at which IDA stops, s. `counted`: true if IDA's counters belong to this run. Returns None, without a start, if
         there are no consistent values or a force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
-        if RESTARTED.short_call(t, ahead, counted, highest_order, self.table) < 0:
+        if RESTARTED.short_call(t, ahead, stop, counted, highest_order, self.table) < 0:
             return None
         cells = self._cells
         return Begun(float(cells["t"]), bool(cells["jumps"]), bool(cells["meets"]))

@@ -156,6 +156,22 @@ def back_with_jump(w, s, m, t):
 
 
 @compiled
+def _as_far_as_projected(w, c, s):
+    """Return the time in which the motion changes by as many tolerances as the projection of the current state."""
+    for k in range(s.n_q):
+        w.rate[k] = 0.0
+    add_rates(s, s.u, 1.0, w.rate)
+    moved = 0.0
+    rate = 0.0
+    for i in range(w.n_q):
+        k = w.q_of[i]
+        tolerance = c.atol[w.q_at[i]] + c.rtol * abs(w.q[k])
+        moved = max(moved, abs(s.q[k] - w.q[k]) / tolerance)
+        rate = max(rate, abs(w.rate[k]) / tolerance)
+    return moved / rate if rate > 0.0 else 0.0
+
+
+@compiled
 def restart_counters(w, s, t):
     """Set the revolution counters to the exact angles that they count."""
     if w.n_counters_of_angles > 0:
@@ -164,8 +180,10 @@ def restart_counters(w, s, t):
             s.q[w.angle_row[k]] = values[w.angle_source[k]]
 
 
-def restarted_at_event(t, ahead, counted, highest_order, table):
+def restarted_at_event(t, ahead, stop, counted, highest_order, table):
     """Project the current state, move it past simultaneous events, and start IDA; OK or a negative number.
+
+    `ahead`: least time in which events are simultaneous, 0 for none.  `stop`: next time at which IDA stops.
 
     A negative number means that nothing was started, and Python determines the reason.
     """
@@ -177,7 +195,9 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
         return int32(UNFINISHED)
     after = t
     if ahead > 0.0:
-        after += moved_past(s, m, t, ahead, w.n_event_functions, w.q, w.values)
+        # the projection may lead back to the side before the event
+        most = max(ahead, min(_as_far_as_projected(w, c, s), 0.5 * (stop - t)))
+        after += moved_past(s, m, t, most, w.n_event_functions, w.q, w.values)
     restart_counters(w, s, after)
     if _started(w, c, s, m, after, counted, highest_order) < 0:
         return int32(UNFINISHED)
@@ -191,7 +211,7 @@ def advance_from(t, end, highest_order, table):
 
     The first step is as long as the last call has left it. Too many steps, an event or a failure give another number.
     """
-    if restarted_at_event(t, 0.0, 0, highest_order, table) < 0:
+    if restarted_at_event(t, 0.0, end, 0, highest_order, table) < 0:
         return int32(UNFINISHED)
     w = start_view(table)
     ida = ints(w.ida)
