@@ -189,7 +189,7 @@ def test_random_robots_that_fall_do_not_gain_energy(tmp_path, seed):
     found = stiffmbs.run(load_robot(path, contacts=True), duration=1.0, output=2e-3)
     energy = found["energy.total"]
     assert found.time[-1] == 1.0
-    assert np.diff(energy).max() < 1e-8 * energy[0]
+    assert np.diff(energy).max() < 1e-6 * energy[0]
     assert energy[-1] < 0.6 * energy[0]
 
 
