@@ -44,9 +44,10 @@ def read_urdf(text: str, contacts: bool = False, ground: float | None = None, fr
     """Read a robot from the text of a URDF file.
 
     `contacts`: True to read the shapes of ``<collision>``. `ground`: height of the plane that they touch, m.
-    `free_root`: True if the root link moves freely; by default it is fixed to ground. Joints with a ``<transmission>`` have an effort as input. If the file has no
-    transmission, joints with a positive effort limit have one. Raises RobotFault if the text is not URDF, or its links
-    and joints are not a tree; names the link or joint.
+    `free_root`: True if the root link moves freely; by default it is fixed to ground. Joints with a
+    ``<transmission>`` have an effort as input. If the file has no transmission, joints with a positive effort limit
+    have one. Raises RobotFault if the text is not URDF, or its links and joints are not a tree; names the link or
+    joint.
     """
     root = _parsed(text)
     links = dict(_named(root, "link"))

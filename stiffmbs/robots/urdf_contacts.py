@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite, nan
 
+from ..reading.files.quoted import quoted
 from ..reading.files.xml_nodes import Node
 from .contact import BOX, CAPSULE, CYLINDER, PLANE, SPHERE, USUAL, Contact, Given, PerMass, Shape, split
 from .robot import RobotFault
@@ -81,6 +83,9 @@ def _number(where: str, node: Node, tag: str) -> float | None:
         return None
     text = found.get("value") or found.text
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
-        raise RobotFault(f"{where}: found '{text}' in <{tag}>, expected a number") from None
+        value = nan
+    if not (isfinite(value) and value >= 0):
+        raise RobotFault(f"{where}: found '{quoted(text)}' in <{tag}>, expected a number of at least 0")
+    return value

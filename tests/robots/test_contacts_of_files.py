@@ -266,6 +266,25 @@ def test_wrong_collisions_of_sdf_are_refused(tmp_path, old, new, message):
         load_robot(path, contacts=True)
 
 
+@pytest.mark.parametrize("solref", ["0.02 0", "-100 1", "0 0"])
+def test_contacts_without_stiffness_are_refused(tmp_path, solref):
+    path = tmp_path / "r.xml"
+    path.write_text(
+        f'<mujoco><default><geom solref="{solref}"/></default><worldbody><geom type="plane" size="1 1 1"/><body><freejoint/>'
+        '<geom size="0.1"/></body></worldbody></mujoco>'
+    )
+    with pytest.raises(InputError, match=f"found a contact with solref='{solref}'"):
+        load_robot(path, contacts=True)
+    load_robot(path)
+
+
+@pytest.mark.parametrize("mu", ["-1", "x", "nan"])
+def test_wrong_surfaces_of_gazebo_are_refused(tmp_path, mu):
+    path = robot(tmp_path, "", f'<gazebo reference="base"><mu1>{mu}</mu1></gazebo>')
+    with pytest.raises(InputError, match=f"<gazebo> of base: found '{mu}' in <mu1>, expected a number of at least 0"):
+        load_robot(path, ground=0.0)
+
+
 def test_options_of_robots_are_refused_with_other_files():
     for option in (["--contacts"], ["--ground", "0"], ["--free-root"]):
         found = CliRunner().invoke(main, ["convert", "scene.yaml", *option])

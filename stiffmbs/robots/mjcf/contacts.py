@@ -10,6 +10,7 @@ import numpy as np
 
 from ...reading.files.quoted import listed
 from ..contact import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE, Contact, PerMass, Shape, impeded, split
+from ..robot import RobotFault
 from .actuators import Disabled
 from .fields import RequestedModel, name_of
 
@@ -121,10 +122,14 @@ def _share(a: float, b: float) -> float:
 def _softness(solref: np.ndarray, solimp: np.ndarray) -> PerMass:
     """Return the spring and damper of a contact beyond the width of its impedance."""
     impedance = float(np.clip(solimp[1], LEAST_IMPEDANCE, MOST_IMPEDANCE))
-    if solref[0] > 0:
-        time, ratio = map(float, solref)
-        return impeded(1.0 / (time * ratio), 2.0 / time, impedance)
-    return impeded(sqrt(-float(solref[0])), -float(solref[1]), impedance)
+    first, second = map(float, solref)
+    if first > 0 and second > 0:
+        return impeded(1.0 / (first * second), 2.0 / first, impedance)
+    if first < 0 and second <= 0:
+        return impeded(sqrt(-first), -second, impedance)
+    raise RobotFault(
+        f"found a contact with solref='{first:g} {second:g}', expected a time constant and a damping ratio above zero, or both numbers below zero"
+    )
 
 
 def _rolling(m: RequestedModel, geoms: Iterable[int], stated: Iterable[int]) -> Iterator[str]:

@@ -97,8 +97,9 @@ KINDS: tuple[JointKind, ...] = ("free", "ball", "slide", "hinge")
 def read_mjcf(path: str | Path, contacts: bool = False, ground: float | None = None) -> Robot:
     """Read a robot from an MJCF file, compiled by MuJoCo with its defaults, included files and inertias of shapes.
 
-    `contacts`: True to read the contacts of geoms. `ground`: height of an added plane, m, with MuJoCo's defaults. Raises RobotFault if MuJoCo refuses the file, or it contains features without an equivalent in a scene. Raises
-    InputError if the file cannot be read.
+    `contacts`: True to read the contacts of geoms. `ground`: height of an added plane, m, with MuJoCo's defaults. Raises
+    RobotFault if MuJoCo refuses the file, or it contains features without an equivalent in a scene. Raises InputError if
+    the file cannot be read.
     """
     spec, compiled = _compiled(path, ground)
     m = RequestedModel(compiled)
