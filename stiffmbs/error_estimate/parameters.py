@@ -28,6 +28,8 @@ class EstimateParameters:
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3
     """Distance from an event within which the equations are not linearised, in lengths of the piece that it ends or starts."""
+    close: float = 1e-2
+    """Explicit step in its longer neighbour below which a jump of values in it is that of an event, and no error."""
     points: int = 6
     """Accepted states on the polynomial that gives the states within a step of bdf."""
     uneven: float = 10.0

@@ -240,17 +240,18 @@ def bars_by_difference(
 ) -> dict[str, ErrorBar]:  # fmt: skip
     """Return the error bars of the channels of a run, from those of a run with another tolerance, at more times.
 
-    A jump between two times of the run that are closer than `close`, s, is no error: the other run may be on its other side.
+    A jump between two times of the run is no error if their distance is below the part `close` of that to a next time: the
+    other run may be on its other side.
 
     `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
     `restarts`: times from which on channels may have jumped, s. `numbers_at_once`: as of `bars`.
     """
-    near = np.diff(times[at]) < close
+    steps = np.diff(times[at])
     errors = {}
     for name, values in channels.items():
         if not name.startswith("constraint."):
             error = np.abs(difference(name, values, others[name][at]))
-            errors[name] = np.maximum(error - _change_beside(values, near), 0.0) / abs(1.0 - part)
+            errors[name] = np.maximum(error - _jump_beside(values, steps, close), 0.0) / abs(1.0 - part)
     found = dict.fromkeys(errors, UNKNOWN)
     known = [name for name, error in errors.items() if not np.isnan(error).all()]
     ends = _both_ends(times, ((others[name], channels[name]) for name in known), at, restarts, numbers_at_once)
@@ -261,10 +262,20 @@ def bars_by_difference(
     return found
 
 
-def _change_beside(values: np.ndarray, near: np.ndarray) -> np.ndarray:
-    """Return the larger change of a channel to those of its two neighbouring values that are near."""
-    change = np.where(near, np.abs(np.diff(values)), 0.0)
-    return np.maximum(np.append(change, 0.0), np.append(0.0, change))
+def _jump_beside(values: np.ndarray, steps: np.ndarray, part: float) -> np.ndarray:
+    """Return the larger jump of a channel in the two steps next to each value, s.
+
+    A jump is the change in a step shorter than a part of a neighbour, as far as the slopes of the neighbours do not explain it.
+    """
+    change = np.abs(np.diff(values))
+    explained = steps * _larger_neighbour(change / steps)
+    jump = np.where(steps < part * _larger_neighbour(steps), np.maximum(change - explained, 0.0), 0.0)
+    return np.maximum(np.append(jump, 0.0), np.append(0.0, jump))
+
+
+def _larger_neighbour(values: np.ndarray) -> np.ndarray:
+    """Return the larger of the neighbours of each value."""
+    return np.maximum(np.append(values[1:], 0.0), np.append(0.0, values[:-1]))
 
 
 def difference(name: str, values: np.ndarray, others: np.ndarray) -> np.ndarray:

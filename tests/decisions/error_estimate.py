@@ -158,6 +158,7 @@ DECISIONS = {
     "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.most,
     "error_estimate.difference": shift_of_time,
     "error_estimate.beside": lambda: along_run._away_from_events(piece(np.ones(10_000)), True)[0],
+    "error_estimate.close": lambda: of_runs._close(prepare(read_scene(SCENE), points="steps").grid),
     "error_estimate.points": lambda: 1 + degree(np.ones(20)),
     "error_estimate.uneven": lambda: count_while(lambda ratio: degree(np.append(np.ones(20), ratio)) > 3, DOUBLES),
     "error_estimate.smooth": lambda: count_while(lambda part: is_smooth(1e-3 * part), DOUBLES),
@@ -181,7 +182,7 @@ DECISIONS = {
 EXPECTED = {
     "error_estimate.events": 101, "error_estimate.work": 1e6,
     "error_estimate.difference": 1e-07,
-    "error_estimate.beside": 10, "error_estimate.points": 6,
+    "error_estimate.beside": 10, "error_estimate.close": 0.01, "error_estimate.points": 6,
     "error_estimate.uneven": 14,
     "error_estimate.lost": 23,
     "error_estimate.tolerances": 27,

@@ -96,3 +96,31 @@ def test_a_projection_back_before_an_event_is_passed_with_it(rtol):
     solution = stiffmbs.run(stiffmbs.read_scene(text), solver="bdf", rtol=rtol, duration=5.0)
     height = stiffmbs.run(stiffmbs.read_scene(text), solver="projected", rtol=1e-8, duration=5.0, points=20001)["b.z"]
     assert solution.solver["events"] == np.count_nonzero(np.diff(np.sign(height + 1.5)))
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_a_projection_at_a_turning_point_leads_to_no_later_event(solver):
+    """A bar on two lines turns back, where its damping has an event, between stops that move."""
+    text = """
+    gravity: [0, -9.81]
+    parameters: {L: 0.5, turned: 1, rate: -2}
+    variables: {gap: 0.24 + 0.1*sin(8*t)}
+    bodies:
+      bar:
+        mass: 1
+        inertia: 0.05
+        position: [L*cos(turned), -L*sin(turned)]
+        angle: turned
+        velocity: [-L*rate*sin(turned), -L*rate*cos(turned)]
+        omega: rate
+    joints:
+      a: {type: point_on_line, i: {body: bar, point: [L, 0]}, j: ground}
+      b: {type: point_on_line, i: {body: bar, point: [-L, 0]}, j: {body: ground, angle: 90 deg}}
+    forces:
+      damping: {type: torque, i: bar, torque: "branch(bar.omega, -0.1*bar.omega, 0, -0.5*bar.omega)"}
+      stops: {type: force, i: bar, force: ["1e4*(max(0, -bar.x - gap) - max(0, bar.x - gap))", 0]}
+    """
+    scene = stiffmbs.read_scene(text)
+    solution = stiffmbs.run(scene, solver=solver, rtol=1e-3, duration=3.0)
+    exact = stiffmbs.run(scene, solver="projected", rtol=1e-9, duration=3.0)
+    np.testing.assert_allclose(solution["bar.angle"], exact["bar.angle"], atol=0.3)

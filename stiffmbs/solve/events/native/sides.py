@@ -147,3 +147,57 @@ def moved_past(s, m, t, most, count, q, values):
     ahead = min(ahead * SEARCH.longer * SEARCH.longer, most)  # closer, rounding may show the change too early
     _passed(s, m, t, ahead, q, count, values)
     return ahead
+
+
+@compiled
+def taken_back(s, m, t, ahead, count, q, here, values, found):
+    """Mark event functions that change sign at t by the positions q, and whose change the current state is still before.
+
+    Return their number.  A mark is the sign after the change.  The current velocities belong to both.  Memory: `here`
+    for positions, `values` for event functions.
+    """
+    copied(here, s.q, s.n_q)
+    if m.n_trailing > 0:
+        evaluate(s, ACCELERATION, t)
+    _go(s, m, -ahead, q)
+    copied(values, evaluate(s, SWITCH, t - ahead), count)
+    _go(s, m, ahead, q)
+    after = evaluate(s, SWITCH, t + ahead)
+    for k in range(count):
+        found[k] = (after[k] > 0.0) - (after[k] < 0.0) if values[k] * after[k] < 0.0 else 0
+    total = _before(s, m, t, ahead, here, count, found)
+    copied(s.q, here, s.n_q)
+    return total
+
+
+@compiled
+def _before(s, m, t, ahead, q, count, found):
+    """Return the number of marked event functions without the sign of their mark after a linear extrapolation from q."""
+    _go(s, m, ahead, q)
+    later = evaluate(s, SWITCH, t + ahead)
+    total = 0
+    for k in range(count):
+        total += found[k] * later[k] < 0.0
+    return total
+
+
+@compiled
+def until_changed(s, m, t, ahead, longest, count, here, found):
+    """Return the time from `ahead` to `longest` in which most marked event functions change; `ahead` if none does.
+
+    The state is extrapolated linearly, and is unchanged in the end.  Memory: `here` for positions.
+    """
+    copied(here, s.q, s.n_q)
+    if m.n_trailing > 0:
+        evaluate(s, ACCELERATION, t)
+    least = _before(s, m, t, ahead, here, count, found)
+    best = ahead
+    time = ahead
+    while least > 0 and time < longest:
+        time = min(SEARCH.longer * time, longest)
+        left = _before(s, m, t, time, here, count, found)
+        if left < least:
+            least = left
+            best = time
+    copied(s.q, here, s.n_q)
+    return best

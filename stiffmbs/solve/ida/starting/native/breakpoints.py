@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
+from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past, taken_back, until_changed
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
@@ -157,7 +157,10 @@ def back_with_jump(w, s, m, t):
 
 @compiled
 def _as_far_as_projected(w, c, s):
-    """Return the time in which the motion changes by as many tolerances as the projection of the current state."""
+    """Return the time in which the motion changes by as many tolerances as the projection of the current state.
+
+    Accelerations must be those of the current state: near a turning point, velocities alone would give too long a time.
+    """
     for k in range(s.n_q):
         w.rate[k] = 0.0
     add_rates(s, s.u, 1.0, w.rate)
@@ -168,7 +171,22 @@ def _as_far_as_projected(w, c, s):
         tolerance = c.atol[w.q_at[i]] + c.rtol * abs(w.q[k])
         moved = max(moved, abs(s.q[k] - w.q[k]) / tolerance)
         rate = max(rate, abs(w.rate[k]) / tolerance)
+    for i in range(w.n_u):
+        k = w.u_of[i]
+        tolerance = c.atol[w.u_at[i]] + c.rtol * abs(w.u[k])
+        moved = max(moved, abs(s.u[k] - w.u[k]) / tolerance)
+        rate = max(rate, abs(s.a[k]) / tolerance)
     return moved / rate if rate > 0.0 else 0.0
+
+
+@compiled
+def _of_events_at_once(w, c, s, m, t, ahead, stop):
+    """Return the time of extrapolation past events at t: `ahead`, or longer if the projection led back before an event."""
+    count = w.n_event_functions
+    if taken_back(s, m, t, ahead, count, w.q, w.kept, w.values, w.found) == 0 or accelerated(s, m, t) < 0:
+        return ahead
+    longest = min(_as_far_as_projected(w, c, s), 0.5 * min(stop - t, c.size))
+    return until_changed(s, m, t, ahead, longest, count, w.kept, w.found)
 
 
 @compiled
@@ -195,8 +213,7 @@ def restarted_at_event(t, ahead, stop, counted, highest_order, table):
         return int32(UNFINISHED)
     after = t
     if ahead > 0.0:
-        # the projection may lead back to the side before the event
-        most = max(ahead, min(_as_far_as_projected(w, c, s), 0.5 * (stop - t)))
+        most = _of_events_at_once(w, c, s, m, t, ahead, stop)
         after += moved_past(s, m, t, most, w.n_event_functions, w.q, w.values)
     restart_counters(w, s, after)
     if _started(w, c, s, m, after, counted, highest_order) < 0:
