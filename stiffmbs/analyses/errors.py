@@ -16,7 +16,7 @@ from ..results.error_bars import ErrorEstimate
 from ..solve.explicit import DOP853
 from ..solve.sampling import restarts
 from ..solve.settings import changed, misses_breakpoints, traits_of
-from ..solve.trajectory import Grid, Outcome, ProgressCallback, Recording, Trajectory
+from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
 from ..tuning import in_use
 
 if TYPE_CHECKING:
@@ -108,22 +108,11 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
             break
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run {how} ended early; use --verify")
+    close = ESTIMATE.close if grid.times is None else 0.0  # own steps may lie just before and after an event
     found = bars_by_difference(
-        times,
-        at,
-        solution.channels,
-        other.channels,
-        part,
-        breakpoints + grid.aside,
-        ESTIMATE.numbers_at_once,
-        _close(grid),
+        times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once, close
     )
     return with_bars(replace(solution, errors=found), job.settings, job.dynamics, trajectory)
-
-
-def _close(grid: Grid) -> float:
-    """Return the part of a neighbouring distance of output times below which two of them may be on both sides of an event."""
-    return ESTIMATE.close if grid.times is None else 0.0
 
 
 def _of_second_runs(settings: RunSettings, trajectory: Trajectory) -> Iterator[tuple[RunSettings, float, str]]:
