@@ -17,6 +17,7 @@ from ..methods import NotebookMethods
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.idle_freedoms import IdleFreedom, idle_freedoms
+from ..redundancy.listed import listed
 from ..redundancy.messages.presolve_report import presolve_sentences, unconnected_notes, unknowns
 from ..redundancy.messages.redundancy import (
     inconsistency_sentences,
@@ -26,7 +27,7 @@ from ..redundancy.messages.redundancy import (
     singular_sentence,
 )
 from ..redundancy.opposed_actuators import opposed_notes
-from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
+from ..redundancy.overconstraint import Overconstraint, overconstraints
 from ..solve.subsystems import Subsystem, presolved
 from ..tuning import in_use
 from .job import Examined, Runnable, assembled, data_of, examined

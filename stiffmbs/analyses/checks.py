@@ -23,7 +23,6 @@ from ..results.energy_balance_notes import range_notes, undefined_values
 from ..run_checks.growth import motion_within_tolerance, senseless
 from ..run_checks.lost_digits import lost_digits_notes
 from ..run_checks.motion import motion_notes
-from ..run_checks.tables import departure_notes, left_by_requests, left_tables, tabled_drive_notes
 from ..solve.settings import settings_notes, traits_of
 from ..solve.trajectory import Trajectory
 from .job import Job
@@ -83,6 +82,7 @@ def _drives(job: Job) -> Iterator[Note]:
     if not any(joint.kind == "drive" for joint in job.data.joints.values()):
         return
     from ..redundancy.opposed_actuators import opposed_notes  # not for models without drives
+    from ..run_checks.tables import tabled_drive_notes
 
     system, grid = job.dynamics.system, job.grid
     opposed = partial(opposed_notes, system, job.data, job.start.q, grid)
@@ -112,6 +112,19 @@ def _ranges(run: Integrated) -> Iterator[Note]:
         yield from range_notes(ranges, partial(series_of, data, run.system, run.rows), run.rows.t)
 
 
+def _left_tables(run: Integrated) -> Iterator[Note]:
+    from ..run_checks.tables import departure_notes, left_tables
+
+    return departure_notes(left_tables(run.system, run.trajectory, run.job.settings), run.job.data)
+
+
+def _tables_left_by_requests(run: Integrated) -> Iterator[Note]:
+    from ..run_checks.tables import departure_notes, left_by_requests
+
+    found = left_by_requests(run.job.data, run.system, run.rows, run.channels or {})
+    return departure_notes(found, run.job.data)
+
+
 CHECKS = (
     Check("parts", lambda run: notes_of(run.job.data)),
     Check("tables", lambda run: table_notes(run.job.data), lambda run: run.system.has_laws),
@@ -127,10 +140,8 @@ CHECKS = (
     Check("settings", lambda run: settings_notes(run.job.settings, run.system)),
     Check("reruns", lambda run: run.of_reruns),
     Check("ranges", _ranges),
-    Check("left tables", lambda run: departure_notes(left_tables(run.system, run.trajectory, run.job.settings), run.job.data),
-          lambda run: run.system.has_tables),
-    Check("tables left by requests", lambda run: departure_notes(left_by_requests(run.job.data, run.system, run.rows, run.channels or {}), run.job.data),
-          lambda run: run.job.data.requests),
+    Check("left tables", _left_tables, lambda run: run.system.has_tables),
+    Check("tables left by requests", _tables_left_by_requests, lambda run: run.job.data.requests),
     Check("flexible bodies", lambda run: flexible_body_notes(run.system, run.rows)),
     Check("impossible results", lambda run: senseless(run.job.dynamics, run.rows, run.job.on_constraints, run.broken)),
     Check("motion", lambda run: motion_notes(run.job.dynamics, run.rows, run.job.settings.rtol, run.again)),

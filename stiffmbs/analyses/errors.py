@@ -13,7 +13,6 @@ from ..errors import StiffmbsError
 from ..model.settings import LARGEST_RTOL, RunSettings
 from ..notes import NoteKind, Severity
 from ..results.error_bars import ErrorEstimate
-from ..solve.explicit import DOP853
 from ..solve.sampling import restarts
 from ..solve.settings import changed, misses_breakpoints, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
@@ -78,6 +77,8 @@ def _steps(trajectory: Trajectory) -> int:
 
 def _work(job: Job, trajectory: Trajectory) -> float:
     """Return the work of a second run, evaluations of the equations times unknowns; infinite if recorded steps have been too many."""
+    from ..solve.explicit.dop853 import DOP853
+
     system, steps, found = job.dynamics.system, _steps(trajectory), trajectory.statistics
     unknowns = system.n_q + system.n_u + system.n_c
     if traits_of(job.settings).fixed_steps:
@@ -94,6 +95,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     """
     from ..error_estimate.estimate import with_bars
     from ..results.error_bars import bars_by_difference
+    from ..solve.explicit.dop853 import DOP853
     from .run import finished
 
     steps, grid = _steps(trajectory), job.grid
@@ -153,6 +155,8 @@ def _with_steps(solution: Solution, trajectory: Trajectory, breakpoints: np.ndar
 
 def _with_errors(settings: RunSettings, part: float, longest: float) -> RunSettings:
     """Return the settings of a run whose errors are a part of those of another one; `longest`: step of that to reduce, s, or 0."""
+    from ..solve.explicit.dop853 import DOP853
+
     changes: dict[str, float] = {"rtol": min(part * settings.rtol, LARGEST_RTOL)}
     if settings.atol is not None:
         changes["atol"] = part * settings.atol

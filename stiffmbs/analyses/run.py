@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
@@ -28,21 +28,21 @@ from ..results.energy_balance_notes import broken_balance, is_broken
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..run_checks.motion import several_solutions_note
-from ..run_checks.tables import left_by_requests, left_tables, stopped_at
 from ..solve.events.departures import Departure, refused_departure
 from ..solve.missing_rows import reported
 from ..solve.reasons import OF_STATUS, Reason
-from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import in_use
 from .checks import Integrated, notes_on
-from .conditions import Monitor
 from .errors import assessed, recording, to_accuracy
-from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .long_runs import Predicted, TakesLongError
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
 from .start_from import StartFrom
+
+if TYPE_CHECKING:
+    from .conditions import Monitor
+    from .given_inputs import Given
 
 
 @takes_settings
@@ -106,6 +106,8 @@ def run_monitored(
     """Simulate a model without stages, up to where a monitor ends the run; other parameters and errors as for `run`."""
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
+        from .given_inputs import with_inputs
+
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
     try:
         with on_drafts():
@@ -247,7 +249,7 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
     system = job.dynamics.system
-    if system.has_tables and (left := refused_departure(left_tables(system, trajectory, job.settings))):
+    if system.has_tables and (left := _refused_table(job, trajectory)):
         trajectory = _up_to(left, job, trajectory)
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
     if job.data.requests and (left := _refused_request(job, rows)):
@@ -256,17 +258,28 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     return Computed(trajectory, rows, job, tuple(left_out))
 
 
+def _refused_table(job: Job, trajectory: Trajectory) -> Departure | None:
+    """Return the first departure of a run from a table with ``beyond: error``, or None."""
+    from ..run_checks.tables import left_tables
+
+    return refused_departure(left_tables(job.dynamics.system, trajectory, job.settings))
+
+
 def _refused_request(job: Job, rows: OutputRows) -> Departure | None:
     """Return the first departure of a request from a table with ``beyond: error``, or None."""
     outputs = job.data.outputs().values()
     if not any(table.beyond == "error" for output in outputs for table in output.tables.values()):
         return None
+    from ..run_checks.tables import left_by_requests
+
     system = job.dynamics.system
     return refused_departure(left_by_requests(job.data, system, rows, channels_of(job.data, system, rows)))
 
 
 def _up_to(departure: Departure, job: Job, trajectory: Trajectory) -> Trajectory:
     """Return a run up to where it leaves a table, repeated with a row there."""
+    from ..run_checks.tables import stopped_at
+
     grid, end = job.grid, departure.first
     if end > grid.start:
         times = None if grid.times is None else np.append(grid.times[grid.times < end], end)
@@ -304,4 +317,6 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     fault = fault_of(job.dynamics.system)
     if fault:
         return Outcome.STOPPED, Reason.FUNCTION.of(f"{sentence}; {fault.clause}")
+    from ..solve.suspect import suspect
+
     return Outcome.STOPPED, OF_STATUS[rows.status].of(sentence + suspect(job.dynamics, t, q, u))

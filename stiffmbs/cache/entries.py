@@ -16,8 +16,6 @@ import hashlib
 import hmac
 import logging
 import os
-import secrets
-import tempfile
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -138,6 +136,9 @@ def _secret(directory: Path) -> bytes | None:
 
 def _new_secret(directory: Path) -> bytes | None:
     """Return a new secret, or that of another process that was faster."""
+    import secrets
+    import tempfile
+
     with suppress(FileNotFoundError, IsADirectoryError):
         (directory / SECRET).unlink()
     handle, part = tempfile.mkstemp(dir=directory, prefix=PART)
@@ -153,6 +154,8 @@ def _new_secret(directory: Path) -> bytes | None:
 
 def _put(path: Path, content: bytes) -> None:
     """Write a file for the user alone to a temporary place, and move it."""
+    import tempfile
+
     handle, part = tempfile.mkstemp(dir=path.parent, prefix=PART)
     try:
         with os.fdopen(handle, "wb") as file:

@@ -6,7 +6,6 @@ import errno
 import math
 import mmap
 import os
-import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -47,6 +46,8 @@ def allocated(*shape: int) -> np.ndarray:
     size = 8 * math.prod(shape)
     if size <= STORAGE.largest_in_memory:
         return np.empty(shape)
+    import tempfile
+
     with tempfile.TemporaryFile(prefix="stiffmbs-") as file:
         _reserve(file.fileno(), size)
         return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=float).reshape(shape)
@@ -60,8 +61,10 @@ def _reserve(file: int, size: int) -> None:
             os.posix_fallocate(file, 0, size)
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            from tempfile import gettempdir
+
             raise InputError(
-                f"found too little space in {tempfile.gettempdir()}, expected {size / 1e9:.2g} GB for a part of the results: "
+                f"found too little space in {gettempdir()}, expected {size / 1e9:.2g} GB for a part of the results: "
                 "ask for fewer output points, or let the variable TMPDIR name a larger folder"
             ) from None
         if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL):  # file systems that cannot reserve

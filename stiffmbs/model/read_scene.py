@@ -25,12 +25,11 @@ from ..reading.units.units import Quantity
 from .beams.division import beams_read
 from .beams.entries import with_beams
 from .files import expand
+from .files.effective import chosen_options, keep_one_grid
 from .files.stages import WrittenScene, with_held, written_stages
 from .model_data import STARTS_LATER
-from .parts.definitions import NAMED
-from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from .parts.placed import with_parts
-from .parts.placing import as_written, placed_in_use, set_in_instances
+from .parts.placing import NAMED, as_written, placed_in_use, set_in_instances
 from .scene import Scene, scene_class
 
 Changes = Sequence[tuple[str, object]]
@@ -115,27 +114,6 @@ def read_changed(written: WrittenScene, changes: Changes, unchanged: Unchanged |
     )  # fmt: skip
 
 
-def effective(written: WrittenScene) -> tuple[Content, dict[str, object]]:
-    """Return a scene as in a file, with its changes, and the changes within instances of parts, by their paths.
-
-    The latter have no place in a scene file. Options are merged; of the section `options` the chosen words are left.
-    """
-    content = expand.unshared(copy.deepcopy(dict(written.content)))
-    found, chosen, changes = chosen_options(content, written.changes, written.source)
-    found, changes = placed_in_use(found, changes)
-    in_parts: dict[str, object] = {}
-    for path, value in changes:
-        if set_in_instances(path, found.get("use")):
-            in_parts[path] = value
-        else:
-            expand.set_value(found, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
-    _keep_one_grid(found, {path for path, _ in changes})
-    if words := chosen["words"]:
-        own: Content = {name: {word: {}} for name, word in words.items() if name in chosen["choices"]}
-        found |= {CHOOSE: words} | ({OPTIONS: own} if own else {})
-    return found, in_parts
-
-
 def _made_scene(
     found: dict[str, object], changes: Changes, source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None, starts_later: frozenset[str],
@@ -154,7 +132,7 @@ def _made_scene(
         else:
             expand.set_value(found, path, read)
             own.append(path)
-    _keep_one_grid(found, {path for path, _ in changes})
+    keep_one_grid(found, {path for path, _ in changes})
     try:
         others = {**chosen, FOLDER: folder, STARTS_LATER: starts_later}
         scene = _validated(found, replaced, in_parts, others, known)
@@ -169,20 +147,6 @@ def _made_scene(
     elif scene.at_start:
         scene._held_at_start = _held_at_start(scene, source)
     return scene
-
-
-def chosen_options(
-    found: dict[str, object], changes: Changes, source: str
-) -> tuple[dict[str, object], Content, Changes]:
-    """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
-    words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
-    for path, word in words.items():
-        expand.set_value(found, path, word)
-    with prefixed(f"{source}, "):
-        chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
-        merged = with_chosen(found, chosen["words"], OPTIONS)
-    merged.pop(CHOOSE, None)
-    return merged, chosen, [change for change in changes if change[0] not in words]
 
 
 def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
@@ -214,16 +178,6 @@ def _held_at_start(scene: Scene, source: str) -> Scene:
         raise InputError(f"{source}: found at_start, expected a scene that starts as described")
     held = with_held(scene.written)
     return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
-
-
-def _keep_one_grid(found: dict[str, object], changed: set[str]) -> None:
-    """Remove one of ``run.output`` and ``run.points`` if only the other one is changed."""
-    run, grids = found.get("run"), ("output", "points")
-    chosen = [name for name in grids if f"run.{name}" in changed]
-    if isinstance(run, dict) and len(chosen) == 1:
-        for name in grids:
-            if name != chosen[0]:
-                run.pop(name, None)
 
 
 def _place(fault: tuple[object, ...], changes: Changes, line_of: LineOf) -> str:

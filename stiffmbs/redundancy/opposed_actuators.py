@@ -16,7 +16,7 @@ from ..compile.terms import TERM_SETS
 from ..notes import Note, NoteKind
 from ..reading.formula.formula import Formula
 from ..solve.trajectory import Grid
-from .overconstraint import listed
+from .listed import listed
 from .parameters import REDUNDANCY
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ import numpy as np
 from ..compile.system import System
 from .drop_first import Redundant, rank_of
 from .inconsistent_constraints import LoopRankResult
+from .listed import listed
 from .loops import LoopJoint
 from .parameters import REDUNDANCY
 from .redundancy import Redundancy
@@ -50,13 +51,6 @@ def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
     what = "all reactions" if len(blocks) == 1 else "these reactions"
     for rank_result, block in blocks:
         yield _overconstraint(redundancy.system, rank_result, block, what)
-
-
-def listed(names: Sequence[str]) -> str:
-    """Join names with commas and 'and'; a long list is shortened."""
-    if len(names) > REDUNDANCY.most_names:
-        names = [*names[: REDUNDANCY.most_names - 1], f"{len(names) - REDUNDANCY.most_names + 1} more"]
-    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def _blocks(rank_result: LoopRankResult) -> list[list[Redundant]]:

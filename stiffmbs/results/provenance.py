@@ -130,23 +130,26 @@ def _source(data: ModelData) -> WrittenScene | None:
 
 def _content(data: ModelData | WrittenScene, chosen: Mapping[str, object]) -> tuple[Content, dict[str, object]]:
     """Return a scene or model as in a scene file, with other settings."""
+    content, in_parts = _of_data(data)
+    if not chosen:
+        return content, in_parts
     from ..model.model_text import written
 
-    content, in_parts = _of_data(data)
     run = {name: written(value) for name, value in chosen.items() if value is not None}
     known = {name: value for name, value in (content.get("run") or {}).items() if name not in chosen}
-    return content | ({"run": known | run} if chosen else {}), in_parts
+    return content | {"run": known | run}, in_parts
 
 
 def _of_data(data: ModelData | WrittenScene) -> tuple[Content, dict[str, object]]:
-    from ..model.model_text import model_content
-    from ..model.read_scene import effective
+    from ..model.files.effective import effective
 
     if isinstance(data, WrittenScene):
         return effective(data)
     read = _source(data)
     if read is not None and isinstance(data, Scene) and data.is_as_read:
         return effective(read)
+    from ..model.model_text import model_content
+
     try:
         return model_content(data) | _of_scene(data), {}
     except InputError:  # a flexible body, or a Python function, which no scene file can hold

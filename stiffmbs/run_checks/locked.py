@@ -9,7 +9,7 @@ import numpy as np
 from ..compile.state import LEFT_OPEN
 from ..dynamics.dynamics import Dynamics
 from ..notes import Note
-from ..redundancy.overconstraint import listed
+from ..redundancy.listed import listed
 from ..redundancy.redundancy import Redundancy
 from ..redundancy.uniqueness import unproven
 from ..solve.reasons import Reason

@@ -13,8 +13,8 @@ from ..compile.state import State
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..notes import Note, NoteKind
+from ..redundancy.listed import listed
 from ..redundancy.loops import loops
-from ..redundancy.overconstraint import listed
 from .parameters import RUN_CHECKS
 
 _AT = "near t = {t:.6g} s, where the equations of {joints} are nearly dependent: "

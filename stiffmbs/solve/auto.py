@@ -27,8 +27,8 @@ from .cost import COSTS, Counted, ImplicitCost, of_explicit_step, of_kernels
 from .engine import Reached
 from .error_control.tolerances import absolute_tolerances
 from .events.restart import restarted
-from .explicit import DOP853
 from .explicit.adaptive import AdaptiveSteps
+from .explicit.dop853 import DOP853
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED, Rates, rates_at
 from .ida.choice import driven

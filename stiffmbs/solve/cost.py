@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ..dynamics.dynamics import Dynamics
 from ..tuning import tuned
-from .explicit import DOP853
+from .explicit.dop853 import DOP853
 
 
 @dataclass(frozen=True)

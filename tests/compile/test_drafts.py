@@ -18,6 +18,7 @@ from stiffmbs.cache import entries, library
 from stiffmbs.compile import record
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.machine import compiler, drafts, finish, object_code
+from stiffmbs.compile.machine.finishing import Finishing
 from stiffmbs.compile.machine.routines import TERMS, compile_unit, forget, fully_compiled, on_drafts, renew, units
 from stiffmbs.compile.symbolic import derive
 
@@ -431,7 +432,7 @@ def test_a_program_that_embeds_python_uses_no_drafts(started, monkeypatch, execu
 
 def test_the_process_is_started_again_after_it_has_ended_and_gives_no_warning(started, monkeypatch, recwarn):
     norm()
-    process = drafts._Finishing([sys.executable, "-c", ""])
+    process = Finishing([sys.executable, "-c", ""])
     monkeypatch.setattr(drafts, "_finishing", [process])
     process.begin = time.monotonic()
     drafts.use("another", True)
@@ -439,7 +440,7 @@ def test_the_process_is_started_again_after_it_has_ended_and_gives_no_warning(st
     process.begin -= 2 * finish.WAITS.patience
     drafts.use("a third", True)
     assert started == [1, 1]
-    drafts._Finishing([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL).__del__()
+    Finishing([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL).__del__()
     assert not [one for one in recwarn if "still running" in str(one.message)]
 
 

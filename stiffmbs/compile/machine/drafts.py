@@ -9,22 +9,22 @@ removes the drafts. Both give bit-equal results.
 from __future__ import annotations
 
 import json
-import math
 import os
-import subprocess
 import sys
-import time
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import ContextVar
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...cache import entries, library
 from .object_code import object_code, origin
+
+if TYPE_CHECKING:
+    from .finishing import Finishing
 
 VARIABLE = "STIFFMBS_DRAFTS"
 """Environment variable; with ``0`` everything is compiled at its full level at once."""
@@ -47,22 +47,7 @@ OPEN = "@entry@"
 """Part of the names of functions in assembly, which is replaced before it is compiled."""
 
 
-class _Finishing(subprocess.Popen[bytes]):
-    """Process that finishes drafts and outlives this one, without a warning of that."""
-
-    begin = math.inf
-
-    def __del__(self) -> None:
-        """Do nothing."""
-
-    def has_ended(self) -> bool:
-        """Return True if it ended for want of drafts, or another process worked then and may have ended since."""
-        from .finish import WAITS
-
-        return self.poll() is not None and time.monotonic() - self.begin > WAITS.patience
-
-
-_finishing: list[_Finishing] = []
+_finishing: list[Finishing] = []
 """Processes that finish drafts, started by this one."""
 
 
@@ -197,19 +182,8 @@ def are_used() -> bool:
 
 
 def _start_finishing() -> None:
-    """Start the process that compiles drafts, with the packages of this process and no others, and do not wait for it."""
-    import llvmlite
-    import platformdirs
+    """Start the process that compiles drafts, and do not wait for it."""
+    from .finishing import started
 
-    packages = sorted({str(Path(file).parents[1]) for file in (llvmlite.__file__, platformdirs.__file__)})
-    path = [str(Path(__file__).parents[3]), *packages]
-    command = f"import sys; sys.path.extend({path!r}); from {__package__}.finish import finish; finish()"
-    quiet = subprocess.DEVNULL
-    low = getattr(subprocess, "IDLE_PRIORITY_CLASS", 0)
-    with suppress(OSError):
-        started = [sys.executable, "-I", "-S", "-c", command]
-        process = _Finishing(
-            started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low
-        )
-        process.begin = time.monotonic()
+    if (process := started()) is not None:
         _finishing[:] = [*(other for other in _finishing if other.poll() is None), process]

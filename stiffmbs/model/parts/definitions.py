@@ -18,6 +18,7 @@ from ...reading.files.yaml_text import Content, read_yaml
 from ...reading.units.units import Quantity
 from .frame import Use
 from .options import OPTIONS, choices_of
+from .placing import NAMED
 from .vectors import Vectors, in_components, parameters_in_components
 
 FOLDER = Path(__file__).with_name("shipped")
@@ -63,8 +64,6 @@ def _read(name: str) -> dict[str, object]:
     return found
 
 
-NAMED = ("bodies", "states", "joints", "forces", "requests")
-"""Sections of a part whose names formulas and other entries can use."""
 KEYS = ("parameters", "limits", "markers", *NAMED, "use", "mounts", OPTIONS)
 
 

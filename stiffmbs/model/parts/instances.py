@@ -14,11 +14,12 @@ from ...reading.names import MOUNT, beginnings
 from ...reading.units.units import Quantity
 from ..beams.entries import with_beams
 from ..files.expand import repeat_entries, set_value
-from .definitions import NAMED, Definitions, definition_in_components
+from .definitions import Definitions, definition_in_components
 from .frame import Use
 from .hard_points import WHEEL, check_hard_points
 from .options import OPTIONS, refuse_unknown_choices, with_chosen
 from .parameters import mounts_of, parameters_of
+from .placing import NAMED
 from .vectors import Vectors, parameters_in_components, vectors_of
 
 REPEATED = ("bodies", "states", "joints", "forces")

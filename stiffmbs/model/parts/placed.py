@@ -28,11 +28,12 @@ from ...reading.formula.variables import meant_within
 from ...reading.marker import MarkerReference
 from ...reading.names import GROUND, MOUNT, Names
 from ...reading.units.units import Quantity, in_text
-from .definitions import NAMED, Definitions, shipped_parts
+from .definitions import Definitions, shipped_parts
 from .frame import Use
 from .hard_points import check_left_and_right, check_sides
 from .instances import Instance, Instances
 from .mirrored import Mirror
+from .placing import NAMED
 
 if TYPE_CHECKING:
     from ..scene import Scene

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 
 from ...errors import InputError
 from ...reading.files.yaml_text import Content
-from .definitions import NAMED
+
+NAMED = ("bodies", "states", "joints", "forces", "requests")
+"""Sections of a part whose names formulas and other entries can use."""
 
 
 def placed_in_use(

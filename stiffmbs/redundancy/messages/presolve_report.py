@@ -12,7 +12,7 @@ from ...compile.coordinates import FIXED, Coordinates
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ...notes import Note, NoteKind
-from ..overconstraint import listed
+from ..listed import listed
 from ..redundancy import Redundancy
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator, Sequence
 
 from ...errors import AssemblyError
 from ...notes import Note, NoteKind, Severity
-from ..overconstraint import Overconstraint, listed, overconstraints
+from ..listed import listed
+from ..overconstraint import Overconstraint, overconstraints
 from ..parameters import REDUNDANCY
 from ..redundancy import Redundancy
 from ..uniqueness import Direction, Indeterminate, unproven

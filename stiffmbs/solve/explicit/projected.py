@@ -8,12 +8,12 @@ from ...model.settings import RunSettings
 from ..integrator import Integrator, integrated
 from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
-from . import SCHEMES
 from .adaptive import AdaptiveSteps
 from .euler_cromer import EULER_CROMER
 from .fixed import solve_with_fixed_steps
 from .integration import Integration
 from .scheme import Scheme
+from .schemes import SCHEMES
 
 READ_BY_FIXED_STEPS = ("scheme", "step", "projection")
 READ_BY_ADAPTIVE_STEPS = ("scheme", "rtol", "atol", "max_step", "projection")

@@ -31,7 +31,6 @@ from ..radau.collocation import radau
 from ..reasons import Reason
 from ..recorded_steps import Piece, StepRecorder
 from ..stiff_rows import States
-from ..suspect import suspect
 from ..trajectory import Grid, History, Recording, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
@@ -306,6 +305,8 @@ class NativeEngine(Engine):
         reason = missing or too_fine(dynamics, self._settings, reached.t, q)
         if reason or not reached.failure:
             return reason
+        from ..suspect import suspect
+
         return reached.failure + suspect(dynamics, reached.t, q, u)
 
     def present(self) -> np.ndarray:

@@ -14,7 +14,6 @@ from ...compile.state import State
 from ...model.settings import RunSettings
 from ...sparse.elimination_order import EliminationOrder
 from ...tuning import parameters_of
-from ..cost import ImplicitCost
 from ..ida.libraries import Libraries, ida_libraries
 from ..ida.session import Session
 from ..ida.statistics import COUNTERS
@@ -24,10 +23,11 @@ from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts, indices
 from .interface import COUNTER, REPEAT, RESOLVES, RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
-from .parameters import RadauParameters
 
 if TYPE_CHECKING:
+    from ..cost import ImplicitCost
     from ..ida.ida import NativeIda
+    from .parameters import RadauParameters
 
 CHOSEN_FROM = tuple(count for count in get_args(RunSettings.model_fields["stages"].annotation) if count != "auto")
 """Numbers of stages among which a run chooses."""

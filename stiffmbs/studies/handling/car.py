@@ -13,9 +13,10 @@ from ...elements.spatial.marker import Point
 from ...elements.spatial.orientation import IDENTITY, conjugate, rotated
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
+from ...model.files.effective import chosen_options
 from ...model.files.expand import set_value, unshared
 from ...model.parts.placing import placed_in_use
-from ...model.read_scene import chosen_options, made_scene
+from ...model.read_scene import made_scene
 from ...model.scene import Scene
 from ...model.vehicle import Vehicle
 from ...reading.did_you_mean import did_you_mean

@@ -12,7 +12,7 @@ import stiffmbs
 from stiffmbs import Body, Model
 from stiffmbs.analyses.job import prepare
 from stiffmbs.dynamics.elimination.eliminated import ATTEMPT
-from stiffmbs.solve.explicit import SCHEMES
+from stiffmbs.solve.explicit.schemes import SCHEMES
 from stiffmbs.solve.trajectory import Outcome
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
 from tests.stress.random_tree import random_tree

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.solve.explicit import SCHEMES
+from stiffmbs.solve.explicit.schemes import SCHEMES
 from tests.bench.peers.trees.scene import scene_of
 from tests.bench.problems.trees_in_space import CONVERGED, OUTPUT, SOLVERS, arm
 
