@@ -13,7 +13,7 @@ from ..compile.inputs.of_time import in_formulas_of_time
 from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..elements.element import Element
-from ..elements.states.state import StateValue
+from ..elements.states.entry import StateValue
 from ..errors import InputError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene

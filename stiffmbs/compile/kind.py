@@ -14,8 +14,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..elements.element import Component, Element, Force, Joint
+from ..elements.states.entry import StateValue
 from ..elements.states.equation import StateName, own_state
-from ..elements.states.state import StateValue
 from ..errors import InputError
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import JointName

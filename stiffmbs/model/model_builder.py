@@ -14,7 +14,7 @@ from ..elements.requests.check import ByChannel, by_channel, check_output
 from ..elements.requests.order import dimensions, with_named
 from ..elements.requests.output_field import read_request
 from ..elements.states.amount import InputValue
-from ..elements.states.linear_system import StateEntry
+from ..elements.states.entry import Entry
 from ..errors import InputError, prefixed
 from ..reading.fields import located
 from ..reading.formula.text import FormulaError
@@ -33,7 +33,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
     def add(self, name: str, part: LineBody) -> Any: ...
 
     @overload
-    def add(self, name: str, part: Joint | Force | StateEntry) -> None: ...
+    def add(self, name: str, part: Joint | Force | Entry) -> None: ...
 
     def add(self, name: str, part: Any) -> Any:
         """Add a body, a joint, a force or a state.

@@ -17,9 +17,9 @@ from ..elements.requests.names import OutputNames
 from ..elements.requests.order import dimensions
 from ..elements.requests.output import Output
 from ..elements.states.amount import InputValue, formulas_of_inputs
+from ..elements.states.entry import StateValue
 from ..elements.states.equation import AngleCounter, FormulaOfRate, Reported, SampledUpdate, StateName, own_state
 from ..elements.states.section import AnyState, Scope, check_formula, check_states, names_in_formulas, refuse_loops
-from ..elements.states.state import StateValue
 from ..methods import NotebookMethods
 from ..reading.did_you_mean import instead_of
 from ..reading.fields import Described

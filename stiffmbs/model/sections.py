@@ -9,7 +9,7 @@ from ..elements.body import AnyBody, check_names
 from ..elements.element import Element, Force, Joint
 from ..elements.kinds import Kinds
 from ..elements.own_elements import check_class
-from ..elements.states.linear_system import StateEntry
+from ..elements.states.entry import Entry
 from ..elements.states.section import Scope, check_states, names_in_formulas
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
@@ -37,7 +37,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
         self.gravity = gravity
         self.markers: dict[str, object] = {}
         self.bodies: dict[str, Body] = {}
-        self.states: dict[str, StateEntry] = {}
+        self.states: dict[str, Entry] = {}
         self.inputs: dict[str, object] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
@@ -59,7 +59,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
     def _section_for(self, name: str, part: object) -> dict[str, Any]:
         if isinstance(part, self.body_type):
             return self.bodies
-        if isinstance(part, StateEntry):
+        if isinstance(part, Entry):
             return self.states
         if not isinstance(part, Joint | Force):
             raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
@@ -108,7 +108,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
         with prefixed("", ValueError):
             if isinstance(part, Element):
                 check_element(name, part, self._scope(self._names()))
-            if isinstance(part, StateEntry):
+            if isinstance(part, Entry):
                 check_states({name: part}, self._scope(None))
 
     def _names(self) -> set[str]:

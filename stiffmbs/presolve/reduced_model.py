@@ -9,8 +9,8 @@ from types import ModuleType
 from typing import Any
 
 from ..elements.element import Element, Joint
+from ..elements.states.entry import StateValue
 from ..elements.states.equation import SpinAngle, StateName
-from ..elements.states.state import StateValue
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
 from ..reading.marker import MarkerReference

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ...elements.states.state import StateValue
+from ...elements.states.entry import StateValue
 from ...errors import InputError
 from ...model.scene import Scene
 from ...model.settings import DEFAULT_POINTS

@@ -15,7 +15,7 @@ from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
 from ...reading.table import Table
 from ...reading.units import si
-from .state import AlgebraicState, Entry, SampledState, State, StateValue
+from .entry import Entry, StateValue
 
 Weighted = tuple[float, Formula | str]
 """Weight, and the formula or state that it multiplies."""
@@ -228,9 +228,6 @@ class PID(Entry):
         others: list[Weighted] = [(self.ki, f"{name}.integral")] if self.ki else []
         others += [(-derivative, f"{name}.filtered")] if derivative else []
         yield name, self._sum(self.kp + derivative, *others)
-
-
-StateEntry = State | AlgebraicState | SampledState | TransferFunction | LinearSystem | PID
 
 
 def _trimmed(coefficients: Sequence[float]) -> list[float]:

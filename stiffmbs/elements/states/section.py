@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
 from typing import Annotated, Any
 
 from ...errors import InputError
@@ -19,34 +20,41 @@ from ...reading.units.units import CONSTANTS, UNITS
 from ..body import AnyBody
 from ..element import Joint
 from ..read_by import Context, JsonSchema, ReadBy
-from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
-from .state import AlgebraicState, SampledState, State, dimension_of_state
+from .amount import Amount, stated_dimension
+from .entry import Entry
 
-KINDS: dict[str, type[StateEntry]] = {
-    "rate": State, "zero": AlgebraicState, "update": SampledState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+KINDS = {
+    "rate": "state:State", "zero": "state:AlgebraicState", "update": "state:SampledState", "numerator": "linear_system:TransferFunction",
+    "denominator": "linear_system:TransferFunction", "a": "linear_system:LinearSystem", "pid": "linear_system:PID",
 }  # fmt: skip
-"""Kinds of entries by a key that only they have."""
+"""File and class of each kind of entry by a key that only it has, imported on demand."""
 
 
-def _read(found: object, context: Context) -> StateEntry:
+def _imported(place: str) -> type[Entry]:
+    file, _, name = place.partition(":")
+    kind: type[Entry] = getattr(import_module(f".{file}", __package__), name)
+    return kind
+
+
+def _read(found: object, context: Context) -> Entry:
     """Return an entry of the section, whose keys select its kind."""
-    if isinstance(found, StateEntry):
+    if isinstance(found, Entry):
         return found
     if not isinstance(found, dict):
         raise ValueError(f"found {written(found)}, expected a mapping of keys to values")
-    kind = next((kind for key, kind in KINDS.items() if key in found), None)
-    if kind is None:
+    key = next((key for key in KINDS if key in found), None)
+    if key is None:
         raise ValueError(f"found none of the keys {', '.join(KINDS)}, expected one of them")
-    if kind is PID:
-        others = [key for key in found if key != "pid"]
+    if key == "pid":
+        others = [other for other in found if other != "pid"]
         if others:
             raise ValueError(f"found the key '{quoted(others[0])}' next to pid, expected it within: pid: {{...}}")
         found = found["pid"]
-    return kind.model_validate(found, context=context)
+    return _imported(KINDS[key]).model_validate(found, context=context)
 
 
 def _schema(schema_of: Callable[[type[object]], JsonSchema]) -> JsonSchema:
-    *schemas, pid = (schema_of(kind) for kind in dict.fromkeys(KINDS.values()))
+    *schemas, pid = (schema_of(_imported(kind)) for kind in dict.fromkeys(KINDS.values()))
     within = {"type": "object", "additionalProperties": False, "properties": {"pid": pid}, "required": ["pid"]}
     return {"anyOf": [*schemas, within]}
 
@@ -59,10 +67,18 @@ def dimensions_of_entry(name: str, entry: object, parameters: object) -> dict[st
     outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
     if isinstance(outputs, list | tuple) and outputs:
         return {f"{name}.{output}": UNKNOWN for output in outputs}
-    return {name: dimension_of_state(entry, parameters)}
+    return {name: _dimension_of_state(entry, parameters)}
 
 
-def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
+def _dimension_of_state(entry: object, parameters: object) -> Known:
+    """Return the known dimension of a state before its validation; unknown if its start cannot be read."""
+    start = getattr(entry, "start", None)
+    if isinstance(start, Amount):
+        return start.dimension
+    return stated_dimension(entry.get("start") if isinstance(entry, dict) else None, parameters)
+
+
+def names_in_formulas(states: Mapping[str, Entry]) -> set[str]:
     """Return the names of states and outputs in formulas."""
     found = {full for name, state in states.items() for full, _ in state.outputs(name)}
     return found | {name for name, state in states.items() if any(full == name for full, _ in state.values(name))}

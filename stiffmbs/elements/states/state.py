@@ -3,57 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from ...reading.fields import Described
 from ...reading.formula.dimension import Known, measured_in, product
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
 from ...reading.units import si
 from ...reading.units.units import in_its_unit, named_unit
-from .amount import Amount, AnyAmount, positive, stated_dimension
+from .amount import Amount, AnyAmount, positive
+from .entry import Entry, StateValue
 
 Scale = Annotated[AnyAmount, AfterValidator(positive)]
-
-
-@dataclass(frozen=True)
-class StateValue:
-    """Scalar unknown in addition to the motion."""
-
-    # its rate of change, the residual of an algebraic state, or the next value of a sampled one; None if an element
-    # defines it
-    rate: Formula | None
-    start: float  # initial value, SI units; for an algebraic state the initial guess
-    scale: float  # characteristic size: its absolute tolerance is that of an angle times this
-    algebraic: bool = False  # whether its equation is 0 = formula, without a rate
-    # period, offset: times between the samples of a sampled state, and of its first one, s; a period of 0 for all other
-    # states
-    period: float = 0.0
-    offset: float = 0.0
-
-
-class Entry(Described):
-    """Base of the entries of the section `states`; scenes use its subclasses."""
-
-    def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """Yield its formulas by field."""
-        for name in type(self).model_fields:
-            value = getattr(self, name)
-            if isinstance(value, Formula):
-                yield name, value
-            elif isinstance(value, tuple):
-                yield from ((f"{name}.{k}", part) for k, part in enumerate(value) if isinstance(part, Formula))
-
-    def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """Yield its unknowns by full name."""
-        raise NotImplementedError
-
-    def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """Yield its outputs by full name; none unless its kind has some, such as a transfer function."""
-        yield from ()
 
 
 class State(Entry):
@@ -155,11 +117,3 @@ def _refuse_other_dimension(field: str, formula: Formula, start: Amount, expecte
             f"{field}: found '{formula.text}', which is {in_its_unit(formula.dimension.exponents)}, expected "
             f"{named_unit(expected.exponents)}, the unit of start{per}"
         )
-
-
-def dimension_of_state(entry: object, parameters: object) -> Known:
-    """Return the known dimension of a state before its validation; unknown if its start cannot be read."""
-    start = getattr(entry, "start", None)
-    if isinstance(start, Amount):
-        return start.dimension
-    return stated_dimension(entry.get("start") if isinstance(entry, dict) else None, parameters)
