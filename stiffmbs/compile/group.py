@@ -14,7 +14,7 @@ from .record import KindRecord
 from .terms import TERM_AXES
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Group:
     """Elements of one kind.
 

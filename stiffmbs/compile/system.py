@@ -34,7 +34,7 @@ class Term(NamedTuple):
     column: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class System:
     """Compiled model.
 

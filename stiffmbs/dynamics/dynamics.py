@@ -37,7 +37,7 @@ ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, OUTPUT_POINTS = toge
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OutputRows:
     """Output rows, one per output time. Columns are contiguous.
 

@@ -27,7 +27,7 @@ MOVED_FAR = NoteKind(
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class InitialValues:
     """Consistent initial values.
 

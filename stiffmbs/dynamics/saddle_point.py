@@ -105,7 +105,7 @@ def _same_matrix(one: Equations, other: Equations) -> bool:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SaddlePoint:
     """Block system with its factors, for compiled code.
 

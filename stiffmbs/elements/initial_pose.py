@@ -41,7 +41,7 @@ class InitialPose:
         return self.model.size()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class InitialMarker:
     """Marker with numbers in ground axes: numerical form of `stiffmbs.compile.symbolic.planar_frames.Frame`.
 
@@ -92,7 +92,7 @@ def _drawn(value: object, model: ModelData) -> Any:
             return value
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class InitialSpatialMarker:
     """Marker with numbers, in ground axes: its point, m, and its unit axes, each of shape (3,)."""
 

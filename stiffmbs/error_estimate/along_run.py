@@ -24,7 +24,7 @@ from .transport import OF_BDF, Transport
 from .vibrations import FastMotions, excited_at_start
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StateErrors:
     """Errors of the states of one mechanism.
 
@@ -53,7 +53,7 @@ class StateErrors:
     fast: FastMotions | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Prepared:
     """Piece with its evaluated states, the points of its steps at which errors are transported, and the defects there.
 

@@ -53,7 +53,7 @@ class _Reports:
         return {name: difference(name, values[name], better[name]) for name in better}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Nodes:
     """States of a run at the nodes of its estimate, their errors (dq, du, ds), and the values and errors of the channels.
 

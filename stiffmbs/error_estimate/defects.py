@@ -23,7 +23,7 @@ from .parameters import ESTIMATE
 from .transport import Transport
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Points:
     """States of a piece at the ends of its steps and at `points` places of each, and their rates.
 

@@ -13,7 +13,7 @@ from ..solve.stiff_rows import with_stiff_forces
 from .coordinates import as_rows, pose_rates, with_rates
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evaluated:
     """States on the constraints, and their rates.
 

@@ -22,7 +22,7 @@ Motion = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 """Rates z' as rows (dq, du, ds) from t, q and u of many states."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curve:
     """Polynomials through the states (q, u) of some steps.
 

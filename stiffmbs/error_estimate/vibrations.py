@@ -22,7 +22,7 @@ from .parameters import ESTIMATE
 from .transport import OF_BDF
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FastMotions:
     """Displacements (dq, du, ds) in modes that steps do not follow.
 

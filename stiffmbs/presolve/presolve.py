@@ -118,7 +118,7 @@ BodyFixedPoses = PlanarPoses | SpatialPoses
 BODY_FIXED_POSES: dict[int, type[PlanarPoses] | type[SpatialPoses]] = {2: PlanarPoses, 3: SpatialPoses}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Part:
     """Mechanism to solve, and the bodies of the whole model that its bodies carry.
 

@@ -23,7 +23,7 @@ MOST_INSTANTS = 100_000
 """Number of instants of a balance at most; of more, only every second (or third, ...) is used."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Balance:
     """Energies and work over a run, J."""
 

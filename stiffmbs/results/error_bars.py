@@ -160,7 +160,7 @@ def _continued(
     return np.maximum(slope * (end - times[k]), 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ChannelErrors:
     """Errors of all channels by one mechanism, by name.
 

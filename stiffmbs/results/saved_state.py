@@ -66,7 +66,7 @@ SET_UP = "set_up"
 """Beginning of the numbers, in such names, of full turns by which elements were reduced when they were set up."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SavedState:
     """Poses and velocities of all bodies at one instant.
 

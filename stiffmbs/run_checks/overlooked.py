@@ -38,7 +38,7 @@ SolvedAgain = Callable[[int], np.ndarray | None]
 """Solves the interval after an output row again, from the state of this row; returns the velocities at its end or None."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Overlooked:
     """Events that the steps of a run missed.
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .trajectory import Recording
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """Steps between two starts of the integrator; row 0 is the start, the others are points of the steps in order of time.
 

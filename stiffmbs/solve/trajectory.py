@@ -68,7 +68,7 @@ IN_DOUBT = "completed, but the results are in doubt"
 """Sentence in place of `Outcome.DONE` for a run whose notes say that its results may be wrong."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class History:
     """Steps of a solver.
 
@@ -100,7 +100,7 @@ class Recording(NamedTuple):
     events: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """Ends of the run, and output times (ends included) or None for the solver's own steps.
 
@@ -168,7 +168,7 @@ def _nearest(t: np.ndarray, known: np.ndarray, apart: float) -> np.ndarray:
     return np.where(np.abs(t - known[k]) <= 3.0 * apart, known[k], t)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trajectory:
     """States over time from one run of a solver.
 

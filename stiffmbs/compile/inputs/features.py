@@ -34,7 +34,7 @@ ALIKE = 2.0
 """Ratio within which bounds of neighbouring pieces are merged to the smaller one."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class InputFeatures:
     """Features of all inputs between two times.
 

@@ -73,7 +73,7 @@ class Memory(NamedTuple):
     needed: WhenNeeded | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LinearSolver:
     """Linear solver of matrices with one pattern.
 

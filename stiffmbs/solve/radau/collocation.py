@@ -16,7 +16,7 @@ MOST_BETWEEN = 4
 """Largest number of corrections of a polynomial between the nodes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Collocation:
     """Radau IIA method of s stages, of order 2 s - 1.
 
