@@ -158,6 +158,28 @@ def test_a_warm_run_changes_package_rarely(monkeypatch):
     assert len(calls.files - alone.files) < 20 and len(calls.changes) - len(alone.changes) < 10 * 38
 
 
+def test_a_warm_run_loads_few_modules():
+    """Measured: 294 in a run of a planar scene that was read and compiled before; faults, and what other scenes need, are loaded on demand."""
+    program = (
+        "import sys, stiffmbs;"
+        f"stiffmbs.run({str(ROOT.parent / 'examples' / 'cart_pendulum.yaml')!r}, duration=0.1);"
+        "print(*sys.modules)"
+    )
+    command = [sys.executable, "-c", program]
+    _, found = (subprocess.run(command, capture_output=True, text=True, check=True) for _ in range(2))
+    loaded = {name.removeprefix("stiffmbs.") for name in found.stdout.split() if name.startswith("stiffmbs.")}
+    assert len(loaded) < 297
+    rare = {
+        "model.read_scene",
+        "model.parts.definitions",
+        "elements.states.state",
+        "redundancy.overconstraint",
+        "run_checks.tables",
+    }
+    rare |= {"solve.explicit.scheme", "solve.events.narrow_inputs", "analyses.conditions", "analyses.given_inputs"}
+    assert not rare & loaded
+
+
 def test_a_scene_loads_few_kinds_of_elements_that_it_does_not_use():
     """A torque and a drive stand in files of other names."""
     program = (

@@ -33,7 +33,6 @@ from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..run_checks.motion import refuse_far_away
 from ..solve import SOLVERS
-from ..solve.events.narrow_inputs import solve_up_to_the_inputs_end
 from ..solve.reasons import Reason
 from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
@@ -193,6 +192,8 @@ class Job:
             if not self.dynamics.system.has_inputs:
                 found = over(grid)
             else:
+                from ..solve.events.narrow_inputs import solve_up_to_the_inputs_end
+
                 found = solve_up_to_the_inputs_end(self.dynamics, grid, over)
         return replace(found, outcome=Outcome.DONE, message=Outcome.DONE.value) if monitor and monitor.met else found
 
