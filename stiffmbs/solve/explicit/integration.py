@@ -85,6 +85,11 @@ class Integration:
         self.begin(start)
 
     @property
+    def memory(self) -> StepMemory:
+        """Arrays of the steps, and their table."""
+        return self._memory
+
+    @property
     def unresolved(self) -> float:
         """Time of the first linearly implicit step that did not resolve a growth, s; NaN if there is none."""
         return self._memory.unresolved

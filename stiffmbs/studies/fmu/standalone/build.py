@@ -1,0 +1,53 @@
+"""FMUs of scenes without Python (FMI 2.0, model exchange and co-simulation)."""
+
+from __future__ import annotations
+
+import tempfile
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from uuid import NAMESPACE_URL, uuid5
+
+from ....compile.machine.routines import fully_compiled
+from ....model.scene import Scene
+from ....results.files import written_whole
+from .description import description
+from .header import header
+from .library import C_CODE, linkable, linked_library, own_platform
+from .model import ENTRIES, exported_model
+
+NOTICES = C_CODE / "notices.txt"
+"""Licences of parts of the library."""
+MOMENT = (1980, 1, 1, 0, 0, 0)
+"""Date of the files in the archive: the same scene gives the same archive."""
+
+
+@fully_compiled()
+def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str) -> tuple[str, ...]:
+    """Write the FMU of a scene, and return its outputs.
+
+    `identifier`: name of the model. `outputs`: channels; by default the requests of the scene, or all channels that the FMU can
+    compute. `text`: description. Raises InputError if only an FMU with Python is possible, or there is no C compiler.
+    """
+    of = own_platform()
+    model = exported_model(scene)
+    places = model.chosen(tuple(outputs) or tuple(scene.outputs()) or tuple(model.places))
+    found = linkable([*ENTRIES.values(), *model.image.functions], of)
+    symbols = dict(zip(ENTRIES, found.names, strict=False))
+    functions = found.names[len(ENTRIES) :]
+    token = f"{{{uuid5(NAMESPACE_URL, header(model, '', symbols, functions) + repr(places))}}}"
+    described = description(model, identifier, token, places, text)
+    with tempfile.TemporaryDirectory() as made:
+        library = linked_library(Path(made), found.code, {"model.h": header(model, token, symbols, functions)}, of)
+
+    def write(part: Path) -> None:
+        with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, content in (
+                ("modelDescription.xml", described),
+                (f"binaries/{of.folder}/{identifier}{of.suffix}", library),
+                ("documentation/licenses/notices.txt", NOTICES.read_bytes()),
+            ):
+                archive.writestr(zipfile.ZipInfo(name, MOMENT), content, zipfile.ZIP_DEFLATED)
+
+    written_whole(target, write)
+    return tuple(places)

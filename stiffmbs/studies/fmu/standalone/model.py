@@ -1,0 +1,160 @@
+"""Model of an FMU without Python: image of the tables of a scene, its variables, and the refusal of what the FMU cannot compute."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....analyses.job import Job, prepare
+from ....compile.machine.image import Image, image_of
+from ....compile.machine.layout import Addressed
+from ....dynamics.dynamics import OUTPUT_POINTS, Dynamics, OutputRows
+from ....dynamics.held_inputs import AffineNumber
+from ....dynamics.native.layouts import JUDGED
+from ....errors import InputError
+from ....model.scene import Scene
+from ....reading.did_you_mean import did_you_mean
+from ....results.channels import channels_of_model, motion_channels, state_channels
+from ....compile.reactions import reactions
+from ....results.joint_angles import joint_angles
+from ....run_checks.tables import may_refuse
+from ....solve.auto import begins_implicit
+from ....solve.explicit import DOP853
+from ....solve.explicit.integration import Integration
+from ....solve.explicit.scheme import ADVANCE
+from ....solve.explicit.state_space import CONSISTENT_RATES, EVENT_FUNCTIONS
+from ....solve.settings import changed, traits_of
+from ...case_solver import CaseSolver, Task, written_scene
+from ...input_numbers import InputNumbers
+from ...simulation import OWN_INPUTS
+
+STEPS_KEPT = 64
+"""Steps whose ends are stored: an FMU reads none, but a call keeps some."""
+ENTRIES: Mapping[str, Addressed] = {
+    "ADVANCE": ADVANCE, "OUTPUT_POINTS": OUTPUT_POINTS, "CONSISTENT_RATES": CONSISTENT_RATES, "EVENT_FUNCTIONS": EVENT_FUNCTIONS,
+}  # fmt: skip
+"""Routines that the C code of the FMU calls, by their names there."""
+TOTAL = "energy.total"
+
+
+@dataclass(frozen=True)
+class ExportedModel:
+    """Scene that an FMU solves by `dop853`, ready to be written.
+
+    - `work`: integration from the start of the scene, whose tables the image contains.
+    - `image`: copy of all tables.
+    - `states`: name of each number of the state (q, u), empty for those without a channel.
+    - `outputs`: places in the row of outputs by channel; `places_of` all channels that an FMU has.
+    - `inputs`: values at the start by name. `numbers`: numbers of forces that depend on them.
+    - `breakpoints`: times at which the integration restarts, s, and their distance `aside`.
+    """
+
+    job: Job
+    work: Integration
+    image: Image
+    states: tuple[str, ...]
+    places: Mapping[str, int]
+    inputs: Mapping[str, float]
+    numbers: tuple[AffineNumber, ...]
+    breakpoints: np.ndarray
+    aside: float
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """Dynamics of the whole model, without the presolve."""
+        return self.job.dynamics
+
+    def chosen(self, names: tuple[str, ...]) -> dict[str, int]:
+        """Return the places of outputs in the row; raises InputError for one that an FMU without Python cannot compute."""
+        for name in names:
+            if name not in self.places:
+                raise InputError(
+                    refused(f"the output '{name}' is computed by Python{did_you_mean(name, self.places)}; choose others by --channel")
+                )
+        return {name: self.places[name] for name in names}
+
+
+def refused(reason: str) -> str:
+    """Return the sentence of a refusal."""
+    return f"an FMU without Python is not possible for this scene: {reason}, or write the FMU with Python (without --native)"
+
+
+def exported_model(scene: Scene) -> ExportedModel:
+    """Return the model of a scene for an FMU.
+
+    Raises InputError for what only an FMU with Python computes.
+    """
+    given = {name: float(value) for name, value in scene.inputs.items() if isinstance(value, float | int)}
+    solver = CaseSolver(Task(written_scene(scene), tuple(f"{OWN_INPUTS}.{name}" for name in given), {}, ()))
+    scene = solver.scene([*given.values()])
+    job = prepare(scene, changed(scene.run, {"presolve": False}))
+    dynamics, grid = job.dynamics, job.grid
+    _refuse(job)
+    numbers = _numbers(job, solver, given)
+    dynamics.forget_pivots()
+    state = dynamics.state
+    state.q[:], state.u[:], state.lam[:] = job.start.q, job.start.u, job.start.lam
+    work = Integration(DOP853, dynamics, job.start, grid, job.settings, STEPS_KEPT)
+    features = dynamics.input_features(grid.start, grid.end)
+    work.step_bound.follow(features)
+    work.watch.watch_for(np.zeros(work.watch.n_event_functions))
+    image = image_of([work.memory.table, dynamics.table, work.watch.table])
+    states, places = _variables(dynamics)
+    return ExportedModel(job, work, image, states, places, given, numbers, features.breakpoints, grid.aside)
+
+
+def _refuse(job: Job) -> None:
+    """Raise an InputError if the model needs Python within a step, or a method that the FMU does not have."""
+    dynamics, settings, system = job.dynamics, job.settings, job.dynamics.system
+    reason = ""
+    if system.has_functions:
+        reason = "it calls Python functions; replace them by formulas"
+    elif system.sampled.any():
+        reason = "it has sampled states; replace them by continuous ones"
+    elif settings.solver == "kinematic":
+        reason = "its solver 'kinematic' is no integrator; choose 'projected'"
+    elif settings.solver == "projected" and traits_of(settings).fixed_steps:
+        reason = "its scheme has fixed steps, and the FMU has the adaptive steps of dop853; choose that scheme"
+    elif may_refuse(system):
+        reason = "a table has 'beyond: error', which is checked by Python; choose 'hold' or 'extend'"
+    elif dynamics.input_end(job.grid.start, job.grid.end) is not None:
+        reason = "a formula of time has no value at the end of the run; end the run before"
+    elif settings.solver != "projected" and begins_implicit(dynamics, job.start, job.grid, settings):
+        reason = "it is stiff, and the FMU has explicit steps only; set 'solver: projected' if short steps are acceptable"
+    if reason:
+        raise InputError(refused(reason))
+
+
+def _numbers(job: Job, solver: CaseSolver, inputs: Mapping[str, float]) -> tuple[AffineNumber, ...]:
+    """Return the numbers of forces that follow from the inputs; raises InputError if they are no affine functions of one each."""
+    if not inputs:
+        return ()
+    found = InputNumbers(job, solver, inputs)
+    if not found.affine or found.of_time:
+        raise InputError(refused("its forces are not affine functions of one input each; rewrite their formulas"))
+    return found.held.numbers
+
+
+def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int]]:
+    """Return the channel of each number of the state, and the place of each channel in the row of outputs.
+
+    Two rows of random numbers tell which channels are a number of the row; all others are computed in Python.
+    """
+    system = dynamics.system
+    widths = (system.n_q, system.n_u, system.n_u, system.n_c, system.n_values("output"), len(JUDGED))
+    numbers = np.random.default_rng(1).uniform(10.0, 1000.0, (2, sum(widths)))  # angles far apart are unwrapped
+    parts = np.split(numbers, np.cumsum(widths)[:-1], axis=1)
+    judged = dict(zip(JUDGED, parts[5].T, strict=True))
+    rows = OutputRows(np.zeros(2), *parts[:5], status=0, **judged)
+    channels = motion_channels(system, rows.q, rows.u, rows.acceleration)
+    channels |= state_channels(system, rows.q, rows.values) | reactions(system, rows.values)
+    if (angles := joint_angles(system)) is not None:
+        channels |= angles.continuous(rows)
+    channels |= channels_of_model(rows)
+    places = {tuple(column): place for place, column in enumerate(numbers.T.tolist())}
+    found = {name: places[tuple(values.tolist())] for name, values in channels.items() if tuple(values.tolist()) in places}
+    n_x = system.n_q + system.n_u
+    named = {place: name for name, place in found.items() if place < n_x}
+    return tuple(named.get(place, "") for place in range(n_x)), found | {TOTAL: sum(widths)}
