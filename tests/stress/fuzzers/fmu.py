@@ -1,10 +1,11 @@
-"""Compare FMUs of random scenes, simulated by FMPy with changing inputs, with runs of the scenes."""
+"""Compare FMUs of random scenes, with and without Python, simulated by FMPy with changing inputs, with runs of the scenes."""
 
 from __future__ import annotations
 
 import json
 import sys
 import tempfile
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,13 @@ from stiffmbs.errors import StiffmbsError, needs
 from stiffmbs.results.saved_state import SavedState
 from stiffmbs.solve.trajectory import Outcome as Ending
 from stiffmbs.studies.fmu.build import build_fmu
+from stiffmbs.studies.fmu.standalone.model import exported_model
 
 from ..case import Outcome, Verdict, measured, told
 from ..random_scenes.features import ALL
 from ..random_scenes.scene import random_scene
 
-WHAT = "FMUs of random scenes in FMPy, one or several in a process, with parameters and changing inputs, against `run`."
+WHAT = "FMUs of random scenes in FMPy, with and without Python, one or several in a process, with changing inputs, against `run`."
 GAIN, GIVEN, PUSH = "fmu_gain", "fmu_given", "fmu_push"
 """Parameter, input and force that are added to each scene."""
 STEPS, SEGMENTS = 20, 3
@@ -30,6 +32,8 @@ STEPS, SEGMENTS = 20, 3
 COSTLY = 0.1
 """Fractions of scenes with tyres and with parts, which take long to compile."""
 RTOL = 1e-8
+NATIVE = 0.5
+"""Fraction of FMUs without Python."""
 BOUND = 1e-5
 """Allowed difference relative to the size of a channel: 1000 times the tolerance, because errors grow at events."""
 FLOOR = 1e-2
@@ -53,14 +57,20 @@ def trial(seed: int) -> Verdict:
     given = [
         Given(float(rng.uniform(-1, 1)), tuple(rng.uniform(-2, 2, SEGMENTS))) for _ in range(rng.choice([1, 1, 2, 4]))
     ]
-    detail = f"{content.get('dimensions', 2)}D, {len(given)} instances, {json.dumps(content)[:600]}"
+    native = bool(np.random.default_rng([seed, 1]).random() < NATIVE)
+    if native:  # its parameters are fixed
+        given = [replace(each, gain=given[0].gain) for each in given]
+    detail = f"{'native' if native else 'Python'}, {content.get('dimensions', 2)}D, {len(given)} instances, {json.dumps(content)[:600]}"
     with tempfile.TemporaryDirectory() as made:
         scene, fmu = Path(made) / "scene.yaml", Path(made) / "scene.fmu"
         scene_text = json.dumps(content)
         scene.write_text(scene_text, encoding="utf-8")
         try:
             channels = _channels(scene)
-            build_fmu(scene, fmu, channels)
+            if native:
+                channels = _built_without_python(scene, fmu, channels, given[0].gain)
+            else:
+                build_fmu(scene, fmu, channels)
             known = [_by_runs(scene, each, channels) for each in given]
         except StiffmbsError as refusal:
             return told(f"{refusal} [{detail}]", ())
@@ -107,6 +117,17 @@ def _scene(rng: np.random.Generator) -> dict[str, Any]:
     content.setdefault("forces", {})[PUSH] = {"type": "force", "i": body, "force": [f"{GAIN} + {GIVEN}", *zeros]}
     content["run"] |= {"rtol": RTOL, "points": STEPS + 1}
     return content
+
+
+def _built_without_python(scene: Path, fmu: Path, channels: tuple[str, ...], gain: float) -> tuple[str, ...]:
+    """Build an FMU without Python, and return those of some channels that it has."""
+    changes = [(f"parameters.{GAIN}", repr(gain))]
+    places = exported_model(load_scene(scene, changes)).places
+    found = tuple(name for name in channels if name in places)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of stiff scenes
+        build_fmu(scene, fmu, found, changes, native=True)
+    return found
 
 
 def _channels(scene: Path) -> tuple[str, ...]:
@@ -157,7 +178,8 @@ def by_fmpy(
         instance.instantiate()
         instance.setupExperiment(startTime=0.0)
         instance.enterInitializationMode()
-        instance.setReal([refs[GAIN], refs[GIVEN]], [each.gain, each.inputs[0]])
+        values = {GAIN: each.gain, GIVEN: each.inputs[0]}
+        instance.setReal(*zip(*[(refs[name], value) for name, value in values.items() if name in refs], strict=True))
         instance.exitInitializationMode()
         instances.append(instance)
     rows: list[Any] = [[] for _ in given]

@@ -6,6 +6,7 @@ import tempfile
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 from uuid import NAMESPACE_URL, uuid5
 
 from ....compile.machine.routines import fully_compiled
@@ -22,9 +23,16 @@ MOMENT = (1980, 1, 1, 0, 0, 0)
 """Date of the files in the archive: the same scene gives the same archive."""
 
 
+class Written(NamedTuple):
+    """Outputs of an FMU, and notes for the user."""
+
+    outputs: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
 @fully_compiled()
-def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str) -> tuple[str, ...]:
-    """Write the FMU of a scene, and return its outputs.
+def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str) -> Written:
+    """Write the FMU of a scene.
 
     `identifier`: name of the model. `outputs`: channels; by default the requests of the scene, or all channels that the FMU can
     compute. `text`: description. Raises InputError if only an FMU with Python is possible, or there is no C compiler.
@@ -50,4 +58,4 @@ def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: S
                 archive.writestr(zipfile.ZipInfo(name, MOMENT), content, zipfile.ZIP_DEFLATED)
 
     written_whole(target, write)
-    return tuple(places)
+    return Written(tuple(places), model.notes)

@@ -10,20 +10,23 @@ import numpy as np
 from ....analyses.job import Job, prepare
 from ....compile.machine.image import Image, image_of
 from ....compile.machine.layout import Addressed
+from ....compile.reactions import reactions
 from ....dynamics.dynamics import OUTPUT_POINTS, Dynamics, OutputRows
 from ....dynamics.held_inputs import AffineNumber
 from ....dynamics.native.layouts import JUDGED
 from ....errors import InputError
 from ....model.scene import Scene
+from ....notes import Note, NoteKind, Severity
 from ....reading.did_you_mean import did_you_mean
 from ....results.channels import channels_of_model, motion_channels, state_channels
-from ....compile.reactions import reactions
 from ....results.joint_angles import joint_angles
 from ....run_checks.tables import may_refuse
 from ....solve.auto import begins_implicit
 from ....solve.explicit import DOP853
 from ....solve.explicit.integration import Integration
+from ....solve.explicit.native.parameters import CONTROL
 from ....solve.explicit.scheme import ADVANCE
+from ....solve.explicit.stable_step import rates_at
 from ....solve.explicit.state_space import CONSISTENT_RATES, EVENT_FUNCTIONS
 from ....solve.settings import changed, traits_of
 from ...case_solver import CaseSolver, Task, written_scene
@@ -37,6 +40,12 @@ ENTRIES: Mapping[str, Addressed] = {
 }  # fmt: skip
 """Routines that the C code of the FMU calls, by their names there."""
 TOTAL = "energy.total"
+STIFF = NoteKind(
+    "fmu-stiff",
+    "the scene is stiff: stability limits the steps of co-simulation to about {step:.2g} s, which takes longer than the implicit steps of a run",
+    "if that is too slow, use model exchange with a solver for stiff equations, or the FMU with Python",
+    Severity.REMARK,
+)
 
 
 @dataclass(frozen=True)
@@ -46,9 +55,10 @@ class ExportedModel:
     - `work`: integration from the start of the scene, whose tables the image contains.
     - `image`: copy of all tables.
     - `states`: name of each number of the state (q, u), empty for those without a channel.
-    - `outputs`: places in the row of outputs by channel; `places_of` all channels that an FMU has.
+    - `places`: places in the row of outputs, by channel. `others`: channels that Python computes.
     - `inputs`: values at the start by name. `numbers`: numbers of forces that depend on them.
     - `breakpoints`: times at which the integration restarts, s, and their distance `aside`.
+    - `notes`: sentences for the user.
     """
 
     job: Job
@@ -56,10 +66,12 @@ class ExportedModel:
     image: Image
     states: tuple[str, ...]
     places: Mapping[str, int]
+    others: tuple[str, ...]
     inputs: Mapping[str, float]
     numbers: tuple[AffineNumber, ...]
     breakpoints: np.ndarray
     aside: float
+    notes: tuple[Note, ...]
 
     @property
     def dynamics(self) -> Dynamics:
@@ -69,9 +81,12 @@ class ExportedModel:
     def chosen(self, names: tuple[str, ...]) -> dict[str, int]:
         """Return the places of outputs in the row; raises InputError for one that an FMU without Python cannot compute."""
         for name in names:
+            if name in self.others:
+                raise InputError(refused(f"the output '{name}' is computed by Python; choose others by --channel"))
             if name not in self.places:
+                near = did_you_mean(name, self.places)
                 raise InputError(
-                    refused(f"the output '{name}' is computed by Python{did_you_mean(name, self.places)}; choose others by --channel")
+                    f"found no channel '{name}'{near}, expected one such as {', '.join(list(self.places)[:12])}"
                 )
         return {name: self.places[name] for name in names}
 
@@ -93,16 +108,17 @@ def exported_model(scene: Scene) -> ExportedModel:
     dynamics, grid = job.dynamics, job.grid
     _refuse(job)
     numbers = _numbers(job, solver, given)
-    dynamics.forget_pivots()
+    notes = _notes(job)
     state = dynamics.state
     state.q[:], state.u[:], state.lam[:] = job.start.q, job.start.u, job.start.lam
     work = Integration(DOP853, dynamics, job.start, grid, job.settings, STEPS_KEPT)
     features = dynamics.input_features(grid.start, grid.end)
     work.step_bound.follow(features)
+    dynamics.forget_pivots()
     work.watch.watch_for(np.zeros(work.watch.n_event_functions))
     image = image_of([work.memory.table, dynamics.table, work.watch.table])
-    states, places = _variables(dynamics)
-    return ExportedModel(job, work, image, states, places, given, numbers, features.breakpoints, grid.aside)
+    states, places, others = _variables(dynamics)
+    return ExportedModel(job, work, image, states, places, (*others, *scene.outputs()), given, numbers, features.breakpoints, grid.aside, notes)
 
 
 def _refuse(job: Job) -> None:
@@ -121,10 +137,28 @@ def _refuse(job: Job) -> None:
         reason = "a table has 'beyond: error', which is checked by Python; choose 'hold' or 'extend'"
     elif dynamics.input_end(job.grid.start, job.grid.end) is not None:
         reason = "a formula of time has no value at the end of the run; end the run before"
-    elif settings.solver != "projected" and begins_implicit(dynamics, job.start, job.grid, settings):
-        reason = "it is stiff, and the FMU has explicit steps only; set 'solver: projected' if short steps are acceptable"
+    elif _steps_of_a_run(job) * (system.n_q + system.n_u) > CONTROL.too_many_steps:
+        reason = f"it is stiff, and explicit steps of {_stable_step(job):.2g} s would take more than ten minutes; reduce its largest stiffness"
     if reason:
         raise InputError(refused(reason))
+
+
+def _stable_step(job: Job) -> float:
+    """Return the longest step, s, that stability allows at the start; infinite without vibrations and damping."""
+    rate = rates_at(job.dynamics, job.grid.start, job.start.q, job.start.u).fastest
+    return DOP853.stability / rate if rate > 0 else np.inf
+
+
+def _steps_of_a_run(job: Job) -> float:
+    """Return the number of explicit steps that stability requires for the run of the scene."""
+    return (job.grid.end - job.grid.start) / _stable_step(job)
+
+
+def _notes(job: Job) -> tuple[Note, ...]:
+    """Return a note if the steps of the FMU are far shorter than those of an implicit solver would be."""
+    if job.settings.solver == "projected" or not begins_implicit(job.dynamics, job.start, job.grid, job.settings):
+        return ()
+    return (STIFF(step=_stable_step(job)),)
 
 
 def _numbers(job: Job, solver: CaseSolver, inputs: Mapping[str, float]) -> tuple[AffineNumber, ...]:
@@ -137,8 +171,8 @@ def _numbers(job: Job, solver: CaseSolver, inputs: Mapping[str, float]) -> tuple
     return found.held.numbers
 
 
-def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int]]:
-    """Return the channel of each number of the state, and the place of each channel in the row of outputs.
+def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int], tuple[str, ...]]:
+    """Return the channel of each number of the state, the place of each channel in the row of outputs, and all other channels.
 
     Two rows of random numbers tell which channels are a number of the row; all others are computed in Python.
     """
@@ -157,4 +191,5 @@ def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int]]:
     found = {name: places[tuple(values.tolist())] for name, values in channels.items() if tuple(values.tolist()) in places}
     n_x = system.n_q + system.n_u
     named = {place: name for name, place in found.items() if place < n_x}
-    return tuple(named.get(place, "") for place in range(n_x)), found | {TOTAL: sum(widths)}
+    found[TOTAL] = sum(widths)
+    return tuple(named.get(place, "") for place in range(n_x)), found, tuple(channels.keys() - found)
