@@ -78,12 +78,10 @@ def image_of(tables: Iterable[Table], more: Iterable[np.ndarray] = ()) -> Image:
     blocks = _blocks([*reached.values(), *arrays, *more])
     stored = {start: ctypes.string_at(start, size) for start, size in blocks.items()}
     order = sorted(blocks, key=lambda start: not any(stored[start]))  # those of zeros at the end
-    offsets, end = {}, 0
-    for start in order:
-        end += -end % CACHE_LINE + start % CACHE_LINE
-        offsets[start] = end, blocks[start]
-        end += blocks[start]
-    size = end + -end % CACHE_LINE
+    offsets, size = {}, 0
+    for start in order:  # at cache lines, so that the offsets do not depend on the addresses
+        offsets[start] = size, blocks[start]
+        size += blocks[start] + -blocks[start] % CACHE_LINE
     found = Image(b"", size, *(np.empty((0, 2), dtype=np.int64),) * 2, (), np.empty(0, dtype=np.int64), 0, offsets)
     words = np.zeros(size, dtype=np.uint8)
     for start, (offset, count) in offsets.items():
@@ -136,14 +134,20 @@ def _own(layout: Layout) -> tuple[list[int], list[int]]:
 
 
 def _blocks(arrays: Iterable[np.ndarray]) -> dict[int, int]:
-    """Return the address and the size in bytes of each block of memory to which arrays belong."""
-    found: dict[int, int] = {}
+    """Return the address and the size in bytes of each block of memory, in the order of the arrays.
+
+    Arrays that overlap, as those of a larger one do, belong to one block.
+    """
+    ends: dict[int, int] = {}
     for array in arrays:
-        while isinstance(array.base, np.ndarray):
-            array = array.base
         if array.size:
-            found[array.__array_interface__["data"][0]] = array.nbytes
-    ordered = sorted(found.items())
-    for (start, size), (later, _) in zip(ordered[:-1], ordered[1:], strict=True):
-        assert start + size <= later, "two blocks overlap"
-    return found
+            start = address(array)
+            ends[start] = max(ends.get(start, 0), start + array.nbytes)
+    block_of: dict[int, int] = {}
+    first = end = 0
+    for start in sorted(ends):
+        if start >= end:
+            first = start
+        end = max(end, ends[start])
+        block_of[start], ends[first] = first, end
+    return {block_of[start]: ends[block_of[start]] - block_of[start] for start in ends}

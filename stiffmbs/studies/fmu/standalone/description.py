@@ -7,7 +7,6 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
-from ....errors import InputError
 from .header import FIRST_DERIVATIVE, FIRST_INPUT, FIRST_OUTPUT
 from .model import ExportedModel
 
@@ -42,8 +41,6 @@ def description(model: ExportedModel, identifier: str, token: str, outputs: Mapp
     start = np.concatenate([model.job.start.q, model.job.start.u]).tolist()
     depends = system.n_c > 0  # on the other states: the start is projected onto the constraints
     initial = "approx" if depends else "exact"
-    if taken := [name for name in outputs if name in model.inputs]:
-        raise InputError(f"found the output '{taken[0]}', which is an input of the FMU, expected another")
     states = []
     for k, (channel, value) in enumerate(zip(model.states, start, strict=True)):
         causality = "output" if channel in outputs else "local"

@@ -30,7 +30,7 @@ from ....solve.explicit.stable_step import rates_at
 from ....solve.explicit.state_space import CONSISTENT_RATES, EVENT_FUNCTIONS
 from ....solve.settings import changed, traits_of
 from ...case_solver import CaseSolver, Task, written_scene
-from ...input_numbers import InputNumbers
+from ...input_numbers import TRIED, InputNumbers
 from ...simulation import OWN_INPUTS
 
 STEPS_KEPT = 64
@@ -81,6 +81,8 @@ class ExportedModel:
     def chosen(self, names: tuple[str, ...]) -> dict[str, int]:
         """Return the places of outputs in the row; raises InputError for one that an FMU without Python cannot compute."""
         for name in names:
+            if name in self.inputs:
+                raise InputError(f"found the output '{name}', which is an input of the FMU, expected another")
             if name in self.others:
                 raise InputError(refused(f"the output '{name}' is computed by Python; choose others by --channel"))
             if name not in self.places:
@@ -118,6 +120,7 @@ def exported_model(scene: Scene) -> ExportedModel:
     work.watch.watch_for(np.zeros(work.watch.n_event_functions))
     image = image_of([work.memory.table, dynamics.table, work.watch.table])
     states, places, others = _variables(dynamics)
+    places = {name: place for name, place in places.items() if name not in given}
     return ExportedModel(job, work, image, states, places, (*others, *scene.outputs()), given, numbers, features.breakpoints, grid.aside, notes)
 
 
@@ -166,9 +169,27 @@ def _numbers(job: Job, solver: CaseSolver, inputs: Mapping[str, float]) -> tuple
     if not inputs:
         return ()
     found = InputNumbers(job, solver, inputs)
-    if not found.affine or found.of_time:
+    if not found.affine:
         raise InputError(refused("its forces are not affine functions of one input each; rewrite their formulas"))
+    if found.of_time and _move_features(job, found, inputs):
+        raise InputError(
+            refused("its inputs change the times at which formulas of time have jumps or bends; rewrite their formulas")
+        )
     return found.held.numbers
+
+
+def _move_features(job: Job, numbers: InputNumbers, inputs: Mapping[str, float]) -> bool:
+    """Return True if the features of formulas of time differ between some values of an input."""
+
+    def features(values: Mapping[str, float]) -> list[list[float]]:
+        numbers.set(values)
+        found = job.dynamics.input_features(job.grid.start, job.grid.end)
+        return [part.tolist() for part in (found.breakpoints, found.starts, found.longest, found.at_ends)]
+
+    first = features(inputs)
+    differ = any(features({**inputs, name: value}) != first for name in inputs for value in TRIED)
+    numbers.set(inputs)
+    return differ
 
 
 def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int], tuple[str, ...]]:
