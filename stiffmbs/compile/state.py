@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from .machine.layout import FLOATS, INTS, Layout, Table, address, fill, packed
+from .machine.layout import FLOATS, INTS, Layout, Table, address, packed
 from .machine.native.tables import CALL, STATE
 from .machine.routines import TERMS
 from .system import System
@@ -43,7 +43,11 @@ class State:
         self._calls: dict[str, Table] = {}
         self._turned: dict[str, np.ndarray] = {}
         self._n_calls, self._n_turned = (np.zeros(len(SETS), dtype=np.int64) for _ in range(2))
-        self._calls_at, self._turned_at, self._values_at = Table(LISTS_BY_SET), Table(LISTS_BY_SET), Table(VALUES_BY_SET)
+        self._calls_at, self._turned_at, self._values_at = (
+            Table(LISTS_BY_SET),
+            Table(LISTS_BY_SET),
+            Table(VALUES_BY_SET),
+        )
         self.relaxations = np.zeros(2 * system.n_c)
         self._followed = np.ascontiguousarray(system.followed)
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
@@ -90,12 +94,13 @@ class State:
         called = [
             (kernel, g)
             for g, group in enumerate(system.groups)
-            if (kernel := system.kernel(term_set, group, f"{g + 1} of {len(system.groups)} kinds, {term_set}")) is not None
+            if (kernel := system.kernel(term_set, group, f"{g + 1} of {len(system.groups)} kinds, {term_set}"))
+            is not None
         ]
         calls = Table(CALL, len(called))
         for row, (kernel, g) in enumerate(called):
             group = system.groups[g]
-            calls.put(
+            calls.put_row(
                 row,
                 {"kernel": kernel, "count": group.count, "index": group.index, "number": group.numbers, "place": system.places[term_set][g]},
             )  # fmt: skip

@@ -107,7 +107,9 @@ class Integrator(Generic[E]):
                 self._events += not at_breakpoint
                 self._breakpoints += at_breakpoint
 
-    def _restarted(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float, chattering: Chattering) -> float:
+    def _restarted(
+        self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float, chattering: Chattering
+    ) -> float:
         """Restart at t from a state, past events within `ahead`; return the time of the start, before the next stop."""
         self.engine.watch.watch_for(self._hovering.band)
         begun, state = self.engine.begin_restart(q, u, t, ahead, stop), self.dynamics.state

@@ -92,7 +92,7 @@ def test_rows_of_a_table_keep_their_links():
     table = Table(INNER, 3)
     arrays = [np.full(2, float(k)) for k in range(3)]
     for k, array in enumerate(arrays):
-        table.put(k, {"first": array, "n": 10 * k})
+        table.put_row(k, {"first": array, "n": 10 * k})
     chosen, same = table.rows(np.array([2, 0])), table.same()
     assert chosen.tolist() == [address(arrays[2]), 20, address(arrays[0]), 0]
     assert [chosen.links[k] is array for k, array in ((0, arrays[2]), (2, arrays[0]))] == [True, True]

@@ -311,7 +311,7 @@ def test_without_a_compiler_the_extra_is_named(built, monkeypatch):
 
 def test_faults_of_the_compiler_and_other_platforms_are_told(built, monkeypatch):
     monkeypatch.setattr(library, "OPTIONS", ("-fno-such-option",))
-    with pytest.raises(InputError, match="the C compiler .* failed"):
+    with pytest.raises(InputError, match=r"the C compiler .* failed"):
         built()
     monkeypatch.setattr(library.platform, "machine", lambda: "riscv64")
     with pytest.raises(InputError, match="made on Linux with x86-64 processors"):

@@ -54,7 +54,7 @@ class Image:
         first = int(np.searchsorted(self._starts, place, "right")) - 1
         start = int(self._starts[first])
         offset, size = self._blocks[start]
-        assert 0 <= first and place < start + size, hex(place)
+        assert first >= 0 and place < start + size, hex(place)
         return offset + place - start
 
     @cached_property

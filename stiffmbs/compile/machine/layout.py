@@ -93,7 +93,7 @@ class Table(np.ndarray):
         self[at] = address(target) if isinstance(target, np.ndarray) else target.address
         self.links[at] = target
 
-    def put(self, row: int, values: Mapping[str, Any]) -> None:
+    def put_row(self, row: int, values: Mapping[str, Any]) -> None:
         """Store numbers, and the addresses of arrays and functions, in a row."""
         for name, value in values.items():
             if isinstance(value, np.ndarray) or hasattr(value, "address"):

@@ -29,7 +29,7 @@ class Compiled(NamedTuple):
 
     Pointers are passed as addresses (``array.ctypes.data``). `call` releases the interpreter lock; `short_call` keeps
     it, because acquiring the lock again may take longer than a call of a few microseconds. `unit`: all that the code follows from, and
-    its source, from which other code can be made (`stiffmbs.compile.machine.emission`).
+    its source, from which other code can be made (`stiffmbs.compile.machine.compiler.in_shared_library`).
     """
 
     address: int

@@ -35,9 +35,7 @@ class Target(NamedTuple):
     processor: str
 
 
-def object_code(
-    assembly: str, level: int, unrolled: bool, processor: str = "", target: Target | None = None
-) -> bytes:
+def object_code(assembly: str, level: int, unrolled: bool, processor: str = "", target: Target | None = None) -> bytes:
     """Return the object code of a module.
 
     Parameters
@@ -135,4 +133,6 @@ def _library_emitter(level: int, target: Target) -> llvm.TargetMachine:
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     of_triple = llvm.Target.from_triple(target.triple)
-    return of_triple.create_target_machine(cpu=target.processor, features="", opt=level, reloc="pic", codemodel="default")
+    return of_triple.create_target_machine(
+        cpu=target.processor, features="", opt=level, reloc="pic", codemodel="default"
+    )

@@ -31,7 +31,9 @@ START_MODULE, RESTART_MODULE = (f"stiffmbs.solve.ida.starting.native.{name}" for
 _START, _RESUME = together(
     START_MODULE, SHORT, start="int32(float64, int64, int64, int64*)", resume="int32(float64, int64, int64*)"
 )
-RESTARTED = Routine(RESTART_MODULE, "restarted_at_event", "int32(float64, float64, float64, int64, int64, int64*)", level=SHORT)
+RESTARTED = Routine(
+    RESTART_MODULE, "restarted_at_event", "int32(float64, float64, float64, int64, int64, int64*)", level=SHORT
+)
 ADVANCE = Routine(RESTART_MODULE, "advance_from", "int32(float64, float64, int64, int64*)")
 FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "reinitialise": "IDAReInit", "set_first_step": "IDASetInitStep",
@@ -98,7 +100,13 @@ class Starts:
         return self._at
 
     def restart(
-        self, state: tuple[np.ndarray, np.ndarray], t: float, ahead: float, stop: float, counted: bool, highest_order: int
+        self,
+        state: tuple[np.ndarray, np.ndarray],
+        t: float,
+        ahead: float,
+        stop: float,
+        counted: bool,
+        highest_order: int,
     ) -> Begun | None:
         """Restart at consistent values after a state.
 

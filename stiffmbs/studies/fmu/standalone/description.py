@@ -41,15 +41,19 @@ def description(model: ExportedModel, identifier: str, token: str, outputs: Mapp
     start = np.concatenate([model.job.start.q, model.job.start.u]).tolist()
     depends = system.n_c > 0  # on the other states: the start is projected onto the constraints
     initial = "approx" if depends else "exact"
-    states = []
-    for k, (channel, value) in enumerate(zip(model.states, start, strict=True)):
-        causality = "output" if channel in outputs else "local"
-        states.append(variables.add(channel or f"state[{k}]", k, causality, {"initial": initial}, {"start": repr(value)}))
-    rates = [
-        variables.add(f"der({channel or f'state[{k}]'})", FIRST_DERIVATIVE + k, "local", {"initial": "calculated"}, {"derivative": str(states[k])})
-        for k, channel in enumerate(model.states)
-    ]  # fmt: skip
-    of_states = {channel: state for channel, state in zip(model.states, states, strict=True) if channel}
+    states = {}
+    for k, channel in model.states.items():
+        causality, value = "output" if channel in outputs else "local", {"start": repr(start[k])}
+        states[k] = variables.add(channel or f"state[{k}]", k, causality, {"initial": initial}, value)
+    rates = []
+    for k, channel in model.states.items():
+        of = {"derivative": str(states[k])}
+        rates.append(
+            variables.add(
+                f"der({channel or f'state[{k}]'})", FIRST_DERIVATIVE + k, "local", {"initial": "calculated"}, of
+            )
+        )
+    of_states = {channel: states[k] for k, channel in model.states.items() if channel}
     chosen = [
         of_states[name] if name in of_states else variables.add(name, FIRST_OUTPUT + place, "output", {"initial": "calculated"}, {})
         for name, place in outputs.items()
@@ -57,7 +61,7 @@ def description(model: ExportedModel, identifier: str, token: str, outputs: Mapp
     for k, (name, value) in enumerate(model.inputs.items()):
         variables.add(name, FIRST_INPUT + k, "input", {}, {"start": repr(value)})
     structure = SubElement(root, "ModelStructure")
-    calculated = {*rates, *chosen} - set(states) | ({*states} if depends else set())
+    calculated = {*rates, *chosen} - {*states.values()} | ({*states.values()} if depends else set())
     for name, places in (("Outputs", sorted(chosen)), ("Derivatives", rates), ("InitialUnknowns", sorted(calculated))):
         _unknowns(structure, name, places)
     indent(root)
@@ -78,9 +82,17 @@ class _Variables:
     def __init__(self, parent: Element) -> None:
         self._parent, self._count = parent, 0
 
-    def add(self, name: str, reference: int, causality: str, attributes: dict[str, str], of_real: dict[str, str]) -> int:
+    def add(
+        self, name: str, reference: int, causality: str, attributes: dict[str, str], of_real: dict[str, str]
+    ) -> int:
         """Add a continuous variable, and return its number."""
         self._count += 1
-        given = {"name": name, "valueReference": str(reference), "causality": causality, "variability": "continuous", **attributes}
+        given = {
+            "name": name,
+            "valueReference": str(reference),
+            "causality": causality,
+            "variability": "continuous",
+            **attributes,
+        }
         SubElement(SubElement(self._parent, "ScalarVariable", given), "Real", of_real)
         return self._count

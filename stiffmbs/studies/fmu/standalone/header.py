@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from ....compile.machine.image import Image
 from ....compile.machine.layout import CACHE_LINE
-from ....dynamics.native.layouts import DYNAMICS, JUDGED
+from ....dynamics.native.layouts import JUDGED
 from ....dynamics.native.parameters import CONSISTENCY
 from ....solve.events.chattering import CHATTERING
 from ....solve.explicit.integration import REASONS
@@ -28,15 +29,15 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
     `token`: GUID of the FMU. `symbols`: names of the routines in the object code, by their names in the C code. `functions`: names of the
     functions of the image in the object code, in its order.
     """
-    image, dynamics, work = model.image, model.dynamics, model.work
+    image, dynamics = model.image, model.dynamics
     system, memory, watch = dynamics.system, model.work.memory, model.work.watch
     start = model.job.start
-    functions = list(functions)
+    functions, algebraic = list(functions), system.algebraic_coordinates.tolist()
     at = {
         "DYNAMICS": image.at(dynamics.table), "STATUS": image.cell(dynamics.table, "status"),
         "EXPLICIT": image.at(memory.table), "WATCH": image.at(watch.table), "BEGUN": image.cell(watch.table, "begun"),
-        "ATOL": _place(image.at, memory.atol), "Y": _place(image.at, memory.y), "LAM": _place(image.at, memory.lam),
-        "END_RATES": _place(image.at, memory.end_rates), "FOUND": _place(image.at, watch.found),
+        "ATOL": _place(image, memory.atol), "Y": _place(image, memory.y), "LAM": _place(image, memory.lam),
+        "END_RATES": _place(image, memory.end_rates), "FOUND": _place(image, watch.found),
         **{name.upper(): image.cell(memory.table, name) for name in OF_STEPS},
     }  # fmt: skip
     sizes = {
@@ -44,7 +45,7 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
         "KINETIC": JUDGED.index("kinetic"), "POTENTIAL": JUDGED.index("potential"), "N_EVENTS": system.n_event_functions,
         "FIRST_LIMIT": system.first_limit, "N_FOUND": len(watch.found), "N_INPUTS": len(model.inputs), "N_NUMBERS": len(model.numbers),
         "N_BREAKS": len(model.breakpoints), "OF_TIME": int(system.has_inputs), "N_LINKS": len(image.links), "N_CALLS": len(image.calls),
-        "N_OWN": len(image.own), "N_OWNED": image.n_owned, "IMAGE_SIZE": image.size, "IMAGE_CONTENT": len(image.content),
+        "N_STATES": len(model.states), "N_ALGEBRAIC": len(algebraic), "N_OWN": len(image.own), "N_OWNED": image.n_owned, "IMAGE_SIZE": image.size, "IMAGE_CONTENT": len(image.content),
         "ALIGNMENT": CACHE_LINE, "FIRST_OUTPUT": FIRST_OUTPUT, "FIRST_DERIVATIVE": FIRST_DERIVATIVE, "FIRST_INPUT": FIRST_INPUT,
         "MOST_EVENTS": int(CHATTERING.too_many), **{f"AT_{name}": place for name, place in at.items()},
     }  # fmt: skip
@@ -54,7 +55,8 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
     }  # fmt: skip
     x = np.concatenate([start.q, start.u])
     number_rows = [
-        f"{{{image.at(each.numbers) + 8 * each.place}, {each.input}, {each.offset!r}, {each.slope!r}}}" for each in model.numbers
+        f"{{{image.at(each.numbers) + 8 * each.place}, {each.input}, {each.offset!r}, {each.slope!r}}}"
+        for each in model.numbers
     ]
     lines = [
         *(f"#define {name} {value}" for name, value in sizes.items()),
@@ -65,6 +67,8 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
         *(f"extern void {name}(void);" for name in dict.fromkeys(functions)),
         _array("double", "start_x", map(repr, x.tolist())),
         _array("double", "nominal_x", map(repr, np.maximum(np.abs(x), 1.0).tolist())),
+        _array("int", "states", map(str, model.states)),
+        _array("int", "algebraic", map(str, algebraic)),
         _array("double", "start_inputs", map(repr, model.inputs.values())),
         _array("double", "breaks", map(repr, model.breakpoints.tolist())),
         "typedef struct { long long at, to; } relocation;",
@@ -79,9 +83,9 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
     return "\n".join(lines) + "\n"
 
 
-def _place(at, array: np.ndarray) -> int:  # type: ignore[no-untyped-def]
+def _place(image: Image, array: np.ndarray) -> int:
     """Return the offset of an array, 0 for an empty one."""
-    return int(at(array)) if array.size else 0
+    return image.at(array) if array.size else 0
 
 
 def _reasons() -> list[str]:

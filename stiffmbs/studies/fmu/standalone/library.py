@@ -100,7 +100,16 @@ def linked_library(folder: Path, code: Sequence[bytes], texts: Mapping[str, str]
         objects[-1].write_bytes(content)
     library = folder / f"library{of.suffix}"
     sources = [C_CODE / name for name in SOURCES]
-    command = [*compiler(of), *OPTIONS, f"-I{folder}", f"-I{C_CODE}", *map(str, [*sources, *objects]), "-lm", "-o", str(library)]
+    command = [
+        *compiler(of),
+        *OPTIONS,
+        f"-I{folder}",
+        f"-I{C_CODE}",
+        *map(str, [*sources, *objects]),
+        "-lm",
+        "-o",
+        str(library),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise InputError(f"the C compiler {command[0]} failed: {done.stderr.strip()[:2000]}")

@@ -54,7 +54,7 @@ class ExportedModel:
 
     - `work`: integration from the start of the scene, whose tables the image contains.
     - `image`: copy of all tables.
-    - `states`: name of each number of the state (q, u), empty for those without a channel.
+    - `states`: name of each continuous state, empty without a channel, by its place in (q, u). All others are algebraic.
     - `places`: places in the row of outputs, by channel. `others`: channels that Python computes.
     - `inputs`: values at the start by name. `numbers`: numbers of forces that depend on them.
     - `breakpoints`: times at which the integration restarts, s, and their distance `aside`.
@@ -64,7 +64,7 @@ class ExportedModel:
     job: Job
     work: Integration
     image: Image
-    states: tuple[str, ...]
+    states: Mapping[int, str]
     places: Mapping[str, int]
     others: tuple[str, ...]
     inputs: Mapping[str, float]
@@ -121,7 +121,19 @@ def exported_model(scene: Scene) -> ExportedModel:
     image = image_of([work.memory.table, dynamics.table, work.watch.table])
     states, places, others = _variables(dynamics)
     places = {name: place for name, place in places.items() if name not in given}
-    return ExportedModel(job, work, image, states, places, (*others, *scene.outputs()), given, numbers, features.breakpoints, grid.aside, notes)
+    return ExportedModel(
+        job,
+        work,
+        image,
+        states,
+        places,
+        (*others, *scene.outputs()),
+        given,
+        numbers,
+        features.breakpoints,
+        grid.aside,
+        notes,
+    )
 
 
 def _refuse(job: Job) -> None:
@@ -192,8 +204,8 @@ def _move_features(job: Job, numbers: InputNumbers, inputs: Mapping[str, float])
     return differ
 
 
-def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int], tuple[str, ...]]:
-    """Return the channel of each number of the state, the place of each channel in the row of outputs, and all other channels.
+def _variables(dynamics: Dynamics) -> tuple[dict[int, str], dict[str, int], tuple[str, ...]]:
+    """Return the channel of each continuous state, the place of each channel in the row of outputs, and all other channels.
 
     Two rows of random numbers tell which channels are a number of the row; all others are computed in Python.
     """
@@ -202,15 +214,18 @@ def _variables(dynamics: Dynamics) -> tuple[tuple[str, ...], dict[str, int], tup
     numbers = np.random.default_rng(1).uniform(10.0, 1000.0, (2, sum(widths)))  # angles far apart are unwrapped
     parts = np.split(numbers, np.cumsum(widths)[:-1], axis=1)
     judged = dict(zip(JUDGED, parts[5].T, strict=True))
-    rows = OutputRows(np.zeros(2), *parts[:5], status=0, **judged)
+    q, u, acceleration, lam, values = parts[:5]
+    rows = OutputRows(np.zeros(2), q, u, acceleration, lam, values, status=0, **judged)
     channels = motion_channels(system, rows.q, rows.u, rows.acceleration)
     channels |= state_channels(system, rows.q, rows.values) | reactions(system, rows.values)
     if (angles := joint_angles(system)) is not None:
         channels |= angles.continuous(rows)
     channels |= channels_of_model(rows)
     places = {tuple(column): place for place, column in enumerate(numbers.T.tolist())}
-    found = {name: places[tuple(values.tolist())] for name, values in channels.items() if tuple(values.tolist()) in places}
-    n_x = system.n_q + system.n_u
-    named = {place: name for name, place in found.items() if place < n_x}
+    found = {
+        name: places[tuple(values.tolist())] for name, values in channels.items() if tuple(values.tolist()) in places
+    }
+    named = {place: name for name, place in found.items()}
+    states = np.setdiff1d(np.arange(system.n_q + system.n_u), system.algebraic_coordinates).tolist()
     found[TOTAL] = sum(widths)
-    return tuple(named.get(place, "") for place in range(n_x)), found, tuple(channels.keys() - found)
+    return {place: named.get(place, "") for place in states}, found, tuple(channels.keys() - found)

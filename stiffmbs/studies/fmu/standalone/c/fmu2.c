@@ -213,21 +213,21 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
     instance *i = c;
-    if (n != N_X) return told(i, fmi2Error, "setContinuousStates", "the number of states is wrong");
-    memcpy(i->x, x, n * sizeof *x);
+    if (n != N_STATES) return told(i, fmi2Error, "setContinuousStates", "the number of states is wrong");
+    for (size_t k = 0; k < n; k++) i->x[states[k]] = x[k];
     forget(i);
     return fmi2OK;
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    if (n != N_X) return told(c, fmi2Error, "getContinuousStates", "the number of states is wrong");
-    memcpy(x, ((instance *)c)->x, n * sizeof *x);
+    if (n != N_STATES) return told(c, fmi2Error, "getContinuousStates", "the number of states is wrong");
+    for (size_t k = 0; k < n; k++) x[k] = ((instance *)c)->x[states[k]];
     return fmi2OK;
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    if (n != N_X) return told(c, fmi2Error, "getNominalsOfContinuousStates", "the number of states is wrong");
-    memcpy(x, nominal_x, n * sizeof *x);
+    if (n != N_STATES) return told(c, fmi2Error, "getNominalsOfContinuousStates", "the number of states is wrong");
+    for (size_t k = 0; k < n; k++) x[k] = nominal_x[states[k]];
     return fmi2OK;
 }
 
@@ -235,7 +235,8 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t n) {
     instance *i = c;
     const char *why = compute_rates(i);
     if (why) return discarded(i, "accelerations", why);
-    memcpy(dx, i->dx, n * sizeof *dx);
+    if (n != N_STATES) return told(i, fmi2Error, "getDerivatives", "the number of states is wrong");
+    for (size_t k = 0; k < n; k++) dx[k] = i->dx[states[k]];
     return fmi2OK;
 }
 

@@ -142,6 +142,7 @@ const char *compute_rates(instance *i) {
     memcpy(x, i->x, sizeof x);
     word status = CONSISTENT_RATES(time_of(i), x, i->dx, i->lam, word_at(i, AT_DYNAMICS));
     i->has_rates = status >= 0;
+    for (int k = 0; k < N_ALGEBRAIC; k++) i->x[algebraic[k]] = x[algebraic[k]]; /* the next iteration begins there */
     return status < 0 ? reason(status) : NULL;
 }
 
