@@ -173,12 +173,14 @@ def _lines(text: str) -> list[str]:
 @output_option("The FMU, .fmu; by default SCENE.fmu in the working folder.")
 @option("--channel TEXT ...", "An output of the FMU; by default the requests of the scene, or all channels", "outputs")
 @option("--native", "Write an FMU without Python: machine code for co-simulation and model exchange.")
+@option("--fmi VERSION", "Version of FMI: 2.0, or 3.0 with --native.", "version", default="2.0")
 @option("--json", "Print one JSON object on one line.", "as_json")
 @CHANGES
 def fmu(
-    scene: str, output: Path | None, outputs: tuple[str, ...], native: bool, as_json: bool, changes: list[tuple[str, str]]
+    scene: str, output: Path | None, outputs: tuple[str, ...], native: bool, version: str, as_json: bool,
+    changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
-    """Write SCENE as an FMU (FMI 2.0, co-simulation) with its inputs, parameters and channels.
+    """Write SCENE as an FMU (co-simulation) with its inputs, parameters and channels.
 
     The FMU needs this package in the Python of the program that runs it (needs the extra fmu). With --native it needs no
     Python: its parameters are fixed when it is written, and it is for model exchange too (needs a C compiler or the
@@ -192,7 +194,7 @@ def fmu(
     target = output or file_beside(scene, ".fmu")
     with refusing(scene, as_json):
         refuse_own_input("-o", scene, target)
-        written = written_fmu(scene, target, outputs, changes, native)
+        written = written_fmu(scene, target, outputs, changes, native, version)
     if as_json:
         printed = {"scene": scene, "output": str(target), "outputs": list(written.outputs)}
         click.echo(json_line(printed | ({"notes": list(map(str, written.notes))} if written.notes else {})))

@@ -16,7 +16,7 @@ import numpy as np
 
 from .layout import CACHE_LINE, OWN, Addressed, Layout, Table, address
 
-WORD = 8
+WORD = np.dtype(np.int64).itemsize
 """Bytes of a word of a table."""
 EMPTIED = ("capacity", "ready")
 """Cells that are zero in tables whose own arrays are not allocated."""

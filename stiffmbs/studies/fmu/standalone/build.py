@@ -19,8 +19,6 @@ from .model import ENTRIES, exported_model
 
 NOTICES = C_CODE / "notices.txt"
 """Licences of parts of the library."""
-MOMENT = (1980, 1, 1, 0, 0, 0)
-"""Date of the files in the archive: the same scene gives the same archive."""
 
 
 class Written(NamedTuple):
@@ -31,11 +29,13 @@ class Written(NamedTuple):
 
 
 @fully_compiled()
-def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str) -> Written:
+def write_standalone_fmu(
+    scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str, version: str
+) -> Written:
     """Write the FMU of a scene.
 
     `identifier`: name of the model. `outputs`: channels; by default the requests of the scene, or all channels that the FMU can
-    compute. `text`: description. Raises InputError if only an FMU with Python is possible, or there is no C compiler.
+    compute. `text`: description. `version`: of FMI. Raises InputError if only an FMU with Python is possible, or there is no C compiler.
     """
     of = own_platform()
     model = exported_model(scene)
@@ -44,7 +44,7 @@ def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: S
     symbols = dict(zip(ENTRIES, found.names, strict=False))
     functions = found.names[len(ENTRIES) :]
     token = f"{{{uuid5(NAMESPACE_URL, header(model, '', symbols, functions) + repr(places))}}}"
-    described = description(model, identifier, token, places, text)
+    described = description(model, identifier, token, places, text, version)
     with tempfile.TemporaryDirectory() as made:
         library = linked_library(Path(made), found.code, {"model.h": header(model, token, symbols, functions)}, of)
 
@@ -52,10 +52,10 @@ def write_standalone_fmu(scene: Scene, target: Path, identifier: str, outputs: S
         with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
             for name, content in (
                 ("modelDescription.xml", described),
-                (f"binaries/{of.folder}/{identifier}{of.suffix}", library),
+                (f"binaries/{of.folders[version]}/{identifier}{of.suffix}", library),
                 ("documentation/licenses/notices.txt", NOTICES.read_bytes()),
             ):
-                archive.writestr(zipfile.ZipInfo(name, MOMENT), content, zipfile.ZIP_DEFLATED)
+                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)  # without the date
 
     written_whole(target, write)
     return Written(tuple(places), model.notes)

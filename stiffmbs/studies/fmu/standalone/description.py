@@ -1,98 +1,167 @@
-"""The file modelDescription.xml of an FMU without Python (FMI 2.0, model exchange and co-simulation)."""
+"""The file modelDescription.xml of an FMU without Python, for model exchange and co-simulation by FMI 2.0 or 3.0."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
-from .header import FIRST_DERIVATIVE, FIRST_INPUT, FIRST_OUTPUT
 from .model import ExportedModel
 
+VERSIONS = "2.0", "3.0"
+"""Versions of FMI."""
 
-def description(model: ExportedModel, identifier: str, token: str, outputs: Mapping[str, int], text: str) -> bytes:
+
+class Variable(NamedTuple):
+    """Continuous variable of an FMU.
+
+    `reference`: its value reference. `initial`: how its start follows; empty for inputs. `start`: value at the start, if it may be set.
+    `state`: value reference of the state that it is the derivative of.
+    """
+
+    name: str
+    reference: int
+    causality: str
+    initial: str = ""
+    start: float | None = None
+    state: int | None = None
+
+
+class Variables(NamedTuple):
+    """Variables of an FMU: continuous states and their derivatives, other outputs, inputs."""
+
+    states: list[Variable]
+    derivatives: list[Variable]
+    outputs: list[Variable]
+    inputs: list[Variable]
+
+    @property
+    def all(self) -> list[Variable]:
+        """Return all of them, in the order of the file."""
+        return [*self.states, *self.derivatives, *self.outputs, *self.inputs]
+
+    @property
+    def reported(self) -> list[Variable]:
+        """Return all outputs, of states too."""
+        return [each for each in self.all if each.causality == "output"]
+
+    @property
+    def unknown_at_start(self) -> list[Variable]:
+        """Return the outputs, states and derivatives that the start computes."""
+        return [each for each in self.all if each.initial in ("calculated", "approx")]
+
+
+def variables_of(model: ExportedModel, outputs: Mapping[str, int]) -> Variables:
+    """Return the variables of an FMU; `outputs`: places of its outputs in the row."""
+    start = np.concatenate([model.job.start.q, model.job.start.u]).tolist()
+    # with joints, the start is the nearest state that satisfies them
+    initial = "approx" if model.dynamics.system.n_c else "exact"
+    names = {k: channel or f"state[{k}]" for k, channel in model.states.items()}
+    known = set(names.values())
+    return Variables(
+        [Variable(name, k, "output" if name in outputs else "local", initial, start[k]) for k, name in names.items()],
+        [
+            Variable(f"der({name})", model.first_derivative + k, "local", "calculated", state=k)
+            for k, name in names.items()
+        ],
+        [
+            Variable(name, model.first_output + place, "output", "calculated")
+            for name, place in outputs.items()
+            if name not in known
+        ],
+        [
+            Variable(name, model.first_input + k, "input", start=value)
+            for k, (name, value) in enumerate(model.inputs.items())
+        ],
+    )
+
+
+def description(
+    model: ExportedModel, identifier: str, token: str, outputs: Mapping[str, int], text: str, version: str
+) -> bytes:
     """Return the model description.
 
     `identifier`: name of the library. `token`: GUID. `outputs`: places of the outputs in the row. `text`: description of the model.
+    `version`: of FMI.
     """
     from .... import __version__
 
-    system, settings, grid = model.dynamics.system, model.job.settings, model.job.grid
+    settings, variables = model.job.settings, variables_of(model, outputs)
+    is_new = version == "3.0"
     root = Element(
-        "fmiModelDescription", fmiVersion="2.0", modelName=identifier, guid=token, description=text, version=__version__,
-        generationTool=f"stiffmbs {__version__}", variableNamingConvention="flat", numberOfEventIndicators=str(system.n_event_functions),
+        "fmiModelDescription", {"instantiationToken" if is_new else "guid": token}, fmiVersion=version, modelName=identifier,
+        description=text, version=__version__, generationTool=f"stiffmbs {__version__}", variableNamingConvention="flat",
     )  # fmt: skip
+    state = "State" if is_new else "state"
     abilities = {
-        "modelIdentifier": identifier, "canNotUseMemoryManagementFunctions": "true", "canGetAndSetFMUstate": "true",
-        "canSerializeFMUstate": "true",
+        "modelIdentifier": identifier, f"canGetAndSetFMU{state}": "true", f"canSerializeFMU{state}": "true",
+        **({} if is_new else {"canNotUseMemoryManagementFunctions": "true"}),
     }  # fmt: skip
-    SubElement(root, "ModelExchange", abilities)
+    SubElement(root, "ModelExchange", abilities | ({"needsCompletedIntegratorStep": "true"} if is_new else {}))
     SubElement(root, "CoSimulation", abilities | {"canHandleVariableCommunicationStepSize": "true"})
     categories = SubElement(root, "LogCategories")
     for name in ("logStatusDiscard", "logStatusError"):
         SubElement(categories, "Category", name=name)
-    step = settings.output or settings.duration / 1000
     SubElement(
-        root, "DefaultExperiment", startTime=repr(grid.start), stopTime=repr(settings.start + settings.duration),
-        tolerance=repr(settings.rtol), stepSize=repr(step),
+        root, "DefaultExperiment", startTime=repr(settings.start), stopTime=repr(settings.start + settings.duration),
+        tolerance=repr(settings.rtol), stepSize=repr(settings.output or settings.duration / 1000),
     )  # fmt: skip
-    variables = _Variables(SubElement(root, "ModelVariables"))
-    start = np.concatenate([model.job.start.q, model.job.start.u]).tolist()
-    depends = system.n_c > 0  # on the other states: the start is projected onto the constraints
-    initial = "approx" if depends else "exact"
-    states = {}
-    for k, channel in model.states.items():
-        causality, value = "output" if channel in outputs else "local", {"start": repr(start[k])}
-        states[k] = variables.add(channel or f"state[{k}]", k, causality, {"initial": initial}, value)
-    rates = []
-    for k, channel in model.states.items():
-        of = {"derivative": str(states[k])}
-        rates.append(
-            variables.add(
-                f"der({channel or f'state[{k}]'})", FIRST_DERIVATIVE + k, "local", {"initial": "calculated"}, of
-            )
-        )
-    of_states = {channel: states[k] for k, channel in model.states.items() if channel}
-    chosen = [
-        of_states[name] if name in of_states else variables.add(name, FIRST_OUTPUT + place, "output", {"initial": "calculated"}, {})
-        for name, place in outputs.items()
-    ]  # fmt: skip
-    for k, (name, value) in enumerate(model.inputs.items()):
-        variables.add(name, FIRST_INPUT + k, "input", {}, {"start": repr(value)})
-    structure = SubElement(root, "ModelStructure")
-    calculated = {*rates, *chosen} - {*states.values()} | ({*states.values()} if depends else set())
-    for name, places in (("Outputs", sorted(chosen)), ("Derivatives", rates), ("InitialUnknowns", sorted(calculated))):
-        _unknowns(structure, name, places)
+    if is_new:
+        _by_references(root, model, variables)
+    else:
+        _by_numbers(root, model, variables)
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True)
 
 
-def _unknowns(structure: Element, name: str, places: Iterable[int]) -> None:
-    """Add a list of variables, if there are any; without dependencies, each may depend on all others."""
-    if places := list(places):
-        found = SubElement(structure, name)
-        for place in places:
-            SubElement(found, "Unknown", index=str(place))
+def _of(variable: Variable) -> dict[str, str]:
+    """Return the attributes that both versions have."""
+    found = {"name": variable.name, "valueReference": str(variable.reference), "causality": variable.causality}
+    return found | {"variability": "continuous"} | ({"initial": variable.initial} if variable.initial else {})
 
 
-class _Variables:
-    """Variables of a model description, numbered from 1 on."""
+def _by_numbers(root: Element, model: ExportedModel, variables: Variables) -> None:
+    """Add variables and structure of FMI 2.0, which numbers the variables from 1 on."""
+    root.set("numberOfEventIndicators", str(model.dynamics.system.n_event_functions))
+    number = {each.reference: k for k, each in enumerate(variables.all, 1)}
+    listed = SubElement(root, "ModelVariables")
+    for each in variables.all:
+        real = {} if each.start is None else {"start": repr(each.start)}
+        real |= {} if each.state is None else {"derivative": str(number[each.state])}
+        SubElement(SubElement(listed, "ScalarVariable", _of(each)), "Real", real)
+    structure = SubElement(root, "ModelStructure")
+    for name, unknowns in (
+        ("Outputs", variables.reported),
+        ("Derivatives", variables.derivatives),
+        ("InitialUnknowns", variables.unknown_at_start),
+    ):
+        part = SubElement(structure, name) if unknowns else None
+        for each in unknowns:
+            assert part is not None
+            SubElement(part, "Unknown", index=str(number[each.reference]))
 
-    def __init__(self, parent: Element) -> None:
-        self._parent, self._count = parent, 0
 
-    def add(
-        self, name: str, reference: int, causality: str, attributes: dict[str, str], of_real: dict[str, str]
-    ) -> int:
-        """Add a continuous variable, and return its number."""
-        self._count += 1
-        given = {
-            "name": name,
-            "valueReference": str(reference),
-            "causality": causality,
-            "variability": "continuous",
-            **attributes,
-        }
-        SubElement(SubElement(self._parent, "ScalarVariable", given), "Real", of_real)
-        return self._count
+def _by_references(root: Element, model: ExportedModel, variables: Variables) -> None:
+    """Add variables and structure of FMI 3.0, which has time and the event indicators among the variables."""
+    listed = SubElement(root, "ModelVariables")
+    time = {"name": "time", "valueReference": str(model.time), "causality": "independent", "variability": "continuous"}
+    SubElement(listed, "Float64", time)
+    indicators = [
+        Variable(f"event_indicator[{k}]", model.time + 1 + k, "local", "calculated")
+        for k in range(model.dynamics.system.n_event_functions)
+    ]
+    for each in [*variables.all, *indicators]:
+        more = {} if each.start is None else {"start": repr(each.start)}
+        more |= {} if each.state is None else {"derivative": str(each.state)}
+        SubElement(listed, "Float64", _of(each) | more)
+    structure = SubElement(root, "ModelStructure")
+    for name, unknowns in (
+        ("Output", variables.reported),
+        ("ContinuousStateDerivative", variables.derivatives),
+        ("InitialUnknown", variables.unknown_at_start),
+        ("EventIndicator", indicators),
+    ):
+        for each in unknowns:
+            SubElement(structure, name, valueReference=str(each.reference))

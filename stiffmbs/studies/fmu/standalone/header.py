@@ -14,13 +14,10 @@ from ....solve.events.chattering import CHATTERING
 from ....solve.explicit.integration import REASONS
 from .model import ExportedModel
 
-FIRST_OUTPUT, FIRST_DERIVATIVE, FIRST_INPUT = 1_000_000, 2_000_000, 3_000_000
-"""First value references of outputs, of derivatives of states, and of inputs; states begin at 0."""
 OF_STEPS = (
     "t", "t_before", "rtol", "last_error", "distance", "distance_of_end", "started", "at_event", "uncertain", "stiff_steps",
 )  # fmt: skip
 """Cells of the steps that the C code reads or sets."""
-_NUMBERS_OF_A_LINE = 8
 
 
 def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functions: Iterable[str]) -> str:
@@ -46,7 +43,7 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
         "FIRST_LIMIT": system.first_limit, "N_FOUND": len(watch.found), "N_INPUTS": len(model.inputs), "N_NUMBERS": len(model.numbers),
         "N_BREAKS": len(model.breakpoints), "OF_TIME": int(system.has_inputs), "N_LINKS": len(image.links), "N_CALLS": len(image.calls),
         "N_STATES": len(model.states), "N_ALGEBRAIC": len(algebraic), "N_OWN": len(image.own), "N_OWNED": image.n_owned, "IMAGE_SIZE": image.size, "IMAGE_CONTENT": len(image.content),
-        "ALIGNMENT": CACHE_LINE, "FIRST_OUTPUT": FIRST_OUTPUT, "FIRST_DERIVATIVE": FIRST_DERIVATIVE, "FIRST_INPUT": FIRST_INPUT,
+        "ALIGNMENT": CACHE_LINE, "FIRST_OUTPUT": model.first_output, "FIRST_DERIVATIVE": model.first_derivative, "FIRST_INPUT": model.first_input, "TIME": model.time,
         "MOST_EVENTS": int(CHATTERING.too_many), **{f"AT_{name}": place for name, place in at.items()},
     }  # fmt: skip
     numbers = {
@@ -100,6 +97,5 @@ def _quoted(text: str) -> str:
 def _array(kind: str, name: str, items: Iterable[str], after: str = "") -> str:
     """Return the definition of a constant array; of one zero if there are no items."""
     found = list(items) or ["{0}" if kind in ("relocation", "affine_number") else "0"]
-    rows = (", ".join(found[k : k + _NUMBERS_OF_A_LINE]) for k in range(0, len(found), _NUMBERS_OF_A_LINE))
     const = "" if "const" in kind else "const "
-    return f"static {const}{kind} {name}[]{after} = {{\n" + ",\n".join(rows) + "};"
+    return f"static {const}{kind} {name}[]{after} = {{\n" + ",\n".join(found) + "};"

@@ -19,7 +19,7 @@ from ....compile.machine.routines import Routine
 from ....errors import InputError
 
 C_CODE = Path(__file__).parent / "c"
-SOURCES = ("instance.c", "fmu2.c")
+SOURCES = ("instance.c", "fmu2.c", "fmu3.c")
 OPTIONS = ("-shared", "-fPIC", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fno-math-errno", "-s")
 COMPILERS = ("cc", "gcc", "clang")
 
@@ -27,18 +27,18 @@ COMPILERS = ("cc", "gcc", "clang")
 class Platform(NamedTuple):
     """Platform of an FMU's library.
 
-    `folder`: its name in FMI 2.0. `suffix`: of the library. `target`: of the code. `zig`: name of the platform for zig, with the
+    `folders`: its names in FMI 2.0 and 3.0. `suffix`: of the library. `target`: of the code. `zig`: name of the platform for zig, with the
     oldest C library.
     """
 
-    folder: str
+    folders: Mapping[str, str]
     suffix: str
     target: Target
     zig: str
 
 
 PLATFORMS = {
-    ("Linux", "x86_64"): Platform("linux64", ".so", Target("x86_64-unknown-linux-gnu", GENERIC), "x86_64-linux-gnu.2.17"),
+    ("Linux", "x86_64"): Platform({"2.0": "linux64", "3.0": "x86_64-linux"}, ".so", Target("x86_64-unknown-linux-gnu", GENERIC), "x86_64-linux-gnu.2.17"),
 }  # fmt: skip
 """Supported platforms, by the names of Python's module `platform`."""
 

@@ -33,8 +33,6 @@ from ...case_solver import CaseSolver, Task, written_scene
 from ...input_numbers import TRIED, InputNumbers
 from ...simulation import OWN_INPUTS
 
-STEPS_KEPT = 64
-"""Steps whose ends are stored: an FMU reads none, but a call keeps some."""
 ENTRIES: Mapping[str, Addressed] = {
     "ADVANCE": ADVANCE, "OUTPUT_POINTS": OUTPUT_POINTS, "CONSISTENT_RATES": CONSISTENT_RATES, "EVENT_FUNCTIONS": EVENT_FUNCTIONS,
 }  # fmt: skip
@@ -78,6 +76,26 @@ class ExportedModel:
         """Dynamics of the whole model, without the presolve."""
         return self.job.dynamics
 
+    @property
+    def first_output(self) -> int:
+        """Value reference of the first number of the row; those of the state begin at 0."""
+        return self.dynamics.system.n_q + self.dynamics.system.n_u
+
+    @property
+    def first_derivative(self) -> int:
+        """Value reference of the first derivative."""
+        return self.first_output + self.places[TOTAL] + 1
+
+    @property
+    def first_input(self) -> int:
+        """Value reference of the first input."""
+        return self.first_derivative + self.first_output
+
+    @property
+    def time(self) -> int:
+        """Value reference of time; those of the event functions follow."""
+        return self.first_input + len(self.inputs)
+
     def chosen(self, names: tuple[str, ...]) -> dict[str, int]:
         """Return the places of outputs in the row; raises InputError for one that an FMU without Python cannot compute."""
         for name in names:
@@ -113,7 +131,7 @@ def exported_model(scene: Scene) -> ExportedModel:
     notes = _notes(job)
     state = dynamics.state
     state.q[:], state.u[:], state.lam[:] = job.start.q, job.start.u, job.start.lam
-    work = Integration(DOP853, dynamics, job.start, grid, job.settings, STEPS_KEPT)
+    work = Integration(DOP853, dynamics, job.start, grid, job.settings, capacity=1)  # no rows are read
     features = dynamics.input_features(grid.start, grid.end)
     work.step_bound.follow(features)
     dynamics.forget_pivots()

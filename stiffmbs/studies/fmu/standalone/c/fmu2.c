@@ -13,10 +13,14 @@
 #define SAME_TIME 1e-9 /* relative difference of times that the sums of a simulating program may have */
 
 static fmi2Status told(instance *i, fmi2Status status, const char *what, const char *why) {
-    if (i->callbacks.logger)
-        i->callbacks.logger(i->callbacks.componentEnvironment, i->name, status, status == fmi2Discard ? "logStatusDiscard" : "logStatusError",
-                            "%s at t = %.9g s: %s", what, i->t, why);
+    char text[256];
+    snprintf(text, sizeof text, "%s at t = %.9g s: %s", what, i->t, why);
+    if (i->report) i->report(i, status, status == fmi2Discard ? "logStatusDiscard" : "logStatusError", text);
     return status;
+}
+
+static void report(instance *i, int status, const char *category, const char *text) {
+    if (i->callbacks.logger) i->callbacks.logger(i->callbacks.componentEnvironment, i->name, status, category, "%s", text);
 }
 
 /* Report why a computation has no result; the simulating program may try another step. */
@@ -37,11 +41,14 @@ const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char *fmi2GetVersion(void) { return fmi2Version; }
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) { return fmi2OK; }
 
+const char *reason_against(const char *token) {
+    if (!has_instructions()) return "this processor lacks AVX2 or FMA, which the machine code of the FMU needs";
+    return token && !strcmp(token, TOKEN) ? NULL : "the GUID is not that of this library";
+}
+
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources, const fmi2CallbackFunctions *callbacks,
                               fmi2Boolean visible, fmi2Boolean logging) {
-    const char *why = NULL;
-    if (!has_instructions()) why = "this processor lacks AVX2 or FMA, which the machine code of the FMU needs";
-    else if (!guid || strcmp(guid, TOKEN)) why = "the GUID is not that of this library";
+    const char *why = reason_against(guid);
     instance *i = why ? NULL : new_instance();
     if (!i) {
         if (callbacks && callbacks->logger)
@@ -49,6 +56,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         return NULL;
     }
     if (callbacks) i->callbacks = *callbacks;
+    i->report = report;
     i->is_exchange = type == fmi2ModelExchange;
     snprintf(i->name, sizeof i->name, "%s", name ? name : "");
     return i;
@@ -101,6 +109,12 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
             if ((why = compute_row(i))) return discarded(i, "outputs", why);
             value[k] = i->row[vr[k] - FIRST_OUTPUT];
         } else if (vr[k] >= FIRST_INPUT && vr[k] < FIRST_INPUT + N_INPUTS) value[k] = i->inputs[vr[k] - FIRST_INPUT];
+        else if (vr[k] == TIME) value[k] = i->t;
+        else if (vr[k] > TIME && vr[k] <= TIME + N_EVENTS) {
+            double values[AT_LEAST_ONE(N_EVENTS)];
+            compute_event_functions(i, values);
+            value[k] = values[vr[k] - TIME - 1];
+        }
         else return told(i, fmi2Error, "getReal", "there is no such variable");
     }
     return fmi2OK;

@@ -69,15 +69,22 @@ void to_start(instance *i) {
     forget(i);
 }
 
+/* Forget what belongs to the instance in the simulating program, not to its state. */
+static void without_program(instance *i) {
+    i->block = i->memory = NULL;
+    i->report = NULL;
+    memset(&i->callbacks, 0, sizeof i->callbacks);
+    i->environment = i->log_message = NULL;
+    memset(i->name, 0, sizeof i->name);
+}
+
 /* The pivots of the factors are no part of a state: without them here too, this instance goes on as one that is restored. */
 void save(instance *i, saved_state *s) {
     free_own(i);
     memset(s, 0, sizeof *s);
     memcpy(s->token, TOKEN, sizeof TOKEN);
     memcpy(&s->own, i, sizeof *i);
-    s->own.block = s->own.memory = NULL;
-    memset(&s->own.callbacks, 0, sizeof s->own.callbacks);
-    memset(s->own.name, 0, sizeof s->own.name);
+    without_program(&s->own);
     memcpy(s->memory, i->memory, IMAGE_SIZE);
 }
 
@@ -87,7 +94,10 @@ void restore(instance *i, const saved_state *s) {
     memcpy(i, &s->own, sizeof *i);
     i->block = now.block;
     i->memory = now.memory;
+    i->report = now.report;
     i->callbacks = now.callbacks;
+    i->environment = now.environment;
+    i->log_message = now.log_message;
     i->is_exchange = now.is_exchange;
     memcpy(i->name, now.name, sizeof i->name);
     memcpy(i->memory, s->memory, IMAGE_SIZE);

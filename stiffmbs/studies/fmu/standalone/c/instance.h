@@ -11,7 +11,8 @@
 
 typedef long long word;
 
-typedef struct {
+typedef struct instance instance;
+struct instance {
     char *block, *memory; /* allocated memory, and the aligned image of the tables within it */
     double t, x[AT_LEAST_ONE(N_X)];
     double dx[AT_LEAST_ONE(N_X)], lam[AT_LEAST_ONE(N_C)], row[N_ROW]; /* rates, multipliers and outputs at the state */
@@ -21,8 +22,10 @@ typedef struct {
     int is_exchange, is_initializing;
     int next_break; /* first breakpoint that has not been passed */
     char name[128];
-    fmi2CallbackFunctions callbacks;
-} instance;
+    void (*report)(instance *i, int status, const char *category, const char *text); /* that of the interface */
+    fmi2CallbackFunctions callbacks;                                                /* FMI 2.0 */
+    void *environment, *log_message;                                                /* FMI 3.0 */
+};
 
 typedef struct {
     char token[sizeof TOKEN];
@@ -45,6 +48,7 @@ const char *compute_row(instance *i);
 void compute_event_functions(instance *i, double values[]);
 const char *project(instance *i);
 const char *advance(instance *i, double end);
+const char *reason_against(const char *token); /* of an instance; NULL if there is none */
 int is_at_breakpoint(const instance *i);
 void pass_breakpoints(instance *i);
 
