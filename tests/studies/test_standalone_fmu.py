@@ -99,17 +99,20 @@ print(json.dumps([validate_fmu(path), found["time"][kept].tolist(), [found[name]
 
 @pytest.mark.filterwarnings("ignore:the scene is stiff")
 @pytest.mark.parametrize(
-    ("name", "kind", "bound"),
+    ("name", "kind", "bound", "version"),
     [
-        ("cart_pendulum", "CoSimulation", 1e-10), ("cart_pendulum", "ModelExchange", 1e-7), ("half_car", "CoSimulation", 1e-8),
-        ("half_car", "ModelExchange", 1e-6), ("bouncing_ball", "CoSimulation", 1e-6), ("bouncing_ball", "ModelExchange", 1e-5),
-        ("stick_slip", "CoSimulation", 1e-6), ("stick_slip", "ModelExchange", 1e-5), ("heavy_top", "CoSimulation", 1e-9),
+        ("cart_pendulum", "CoSimulation", 1e-10, "2.0"), ("cart_pendulum", "ModelExchange", 1e-7, "2.0"),
+        ("half_car", "CoSimulation", 1e-8, "2.0"), ("half_car", "ModelExchange", 1e-6, "2.0"),
+        ("bouncing_ball", "CoSimulation", 1e-6, "2.0"), ("bouncing_ball", "ModelExchange", 1e-5, "2.0"),
+        ("stick_slip", "CoSimulation", 1e-6, "2.0"), ("stick_slip", "ModelExchange", 1e-5, "2.0"),
+        ("heavy_top", "CoSimulation", 1e-9, "2.0"), ("half_car", "CoSimulation", 1e-8, "3.0"), ("half_car", "ModelExchange", 1e-6, "3.0"),
+        ("bouncing_ball", "CoSimulation", 1e-6, "3.0"), ("bouncing_ball", "ModelExchange", 1e-5, "3.0"),
     ],
 )  # fmt: skip
-def test_an_fmu_moves_as_a_run_does(tmp_path, name, kind, bound):
+def test_an_fmu_moves_as_a_run_does(tmp_path, name, kind, bound, version):
     """All channels that it has: motions, reactions, energies; with breakpoints of inputs, impacts, and dry friction."""
     fmu, scene = tmp_path / "a.fmu", EXAMPLES / f"{name}.yaml"
-    channels = stiffmbs.build_fmu(scene, fmu, native=True)
+    channels = stiffmbs.build_fmu(scene, fmu, native=True, version=version)
     run = stiffmbs.run(scene, solver="projected", rtol=1e-12)
     step = float(run.t[1] - run.t[0])
     (faults, times, found), _ = told_by(SIMULATED, fmu, kind, run.t[-1], step, json.dumps(channels))
@@ -148,7 +151,7 @@ def test_an_fmu_needs_no_package(built, tmp_path):
     about = fmpy.read_model_description(str(fmu))
     folder = Path(fmpy.extract(str(fmu), str(tmp_path / "fmu")))
     refs = [next(v.valueReference for v in about.modelVariables if v.name == name) for name in ("sled.x", "sled.vx")]
-    file = folder / "binaries" / own_platform().folder / "pushed.so"
+    file = folder / "binaries" / own_platform().folders["2.0"] / "pushed.so"
     command = [sys.executable, "-I", "-S", "-c", ALONE, str(file), about.guid, json.dumps(refs)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=100, env={})
     status, found = json.loads(done.stdout)
@@ -276,6 +279,38 @@ print(json.dumps(values(made, "bar.x", "bar.y", "bar.angle", "constraint.positio
     (x, y, angle, open_), _ = told_by(script, built(text))
     assert open_ < 1e-11 and (x, y) == pytest.approx((np.cos(angle), np.sin(angle)), abs=1e-11)
     assert angle == pytest.approx(-np.pi / 2, abs=0.1)
+
+
+IN_VERSION_3 = """
+from fmpy.fmi3 import FMU3Slave
+told = []
+made = FMU3Slave(guid=about.guid, unzipDirectory=extract(path), modelIdentifier="pushed", instanceName="a")
+made.instantiate(logMessage=None)
+made.enterInitializationMode(startTime=0.0)
+made.setFloat64([refs["push"]], [2.0])
+made.exitInitializationMode()
+step = lambda first, last: [made.doStep(0.01 * k, 0.01) for k in range(first, last)] and made.getFloat64([refs["sled.x"], refs["time"]])
+step(0, 50)
+kept = made.getFMUState()
+data = made.serializeFMUState(kept)
+ends = [step(50, 100)]
+made.setFMUState(made.deserializeFMUState(data))
+ends.append(step(50, 100))
+print(json.dumps([ends, refused(made.doStep, 3.0, 0.1), refused(made.getInt32, [0])]))
+"""
+
+
+def test_fmi_3_has_the_same_states_and_refusals(built):
+    ((first, again), *faults), _ = told_by(IN_VERSION_3, built(version="3.0"))
+    assert first == again and faults == [True, True]
+    assert first == pytest.approx([np.sin(OMEGA) / OMEGA + 2 / 40 * (1 - np.cos(OMEGA)), 1.0], abs=1e-7)
+
+
+def test_versions_are_2_and_3(built, tmp_path):
+    with pytest.raises(InputError, match=r"version: found '1\.0', expected 2\.0 or 3\.0"):
+        built(version="1.0")
+    with pytest.raises(InputError, match=r"found '3\.0', expected 2\.0, or an FMU without Python"):
+        stiffmbs.build_fmu(tmp_path / "pushed.yaml", tmp_path / "a.fmu", version="3.0")
 
 
 REQUESTS = SCENE + "requests: {where: 2*sled.x}\n"
