@@ -246,8 +246,10 @@ def test_instances_in_threads_are_equal_to_the_last_bit(tmp_path):
 
 
 def test_two_of_one_scene_are_equal_to_the_last_byte(built):
+    """With other parameters of the integrator, the code is another one."""
     first = built().read_bytes()
     assert built().read_bytes() == first
+    assert built(SCENE.replace("rtol:", "tuning: {explicit_steps: {safety: 0.5}}, rtol:")).read_bytes() != first
 
 
 def test_formulas_of_time_are_known_for_the_run_alone(built):

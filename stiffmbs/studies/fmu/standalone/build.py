@@ -1,4 +1,4 @@
-"""FMUs of scenes without Python (FMI 2.0, model exchange and co-simulation)."""
+"""FMUs of scenes without Python, for model exchange and co-simulation by FMI 2.0 or 3.0."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from uuid import NAMESPACE_URL, uuid5
 from ....compile.machine.routines import fully_compiled
 from ....model.scene import Scene
 from ....results.files import written_whole
+from ....tuning import in_use
 from .description import description
 from .header import header
 from .library import C_CODE, linkable, linked_library, own_platform
@@ -37,6 +38,12 @@ def write_standalone_fmu(
     `identifier`: name of the model. `outputs`: channels; by default the requests of the scene, or all channels that the FMU can
     compute. `text`: description. `version`: of FMI. Raises InputError if only an FMU with Python is possible, or there is no C compiler.
     """
+    with in_use(scene.run.tuning):
+        return _written(scene, target, identifier, outputs, text, version)
+
+
+def _written(scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str, version: str) -> Written:
+    """Write the FMU with the parameters in use; see `write_standalone_fmu`."""
     of = own_platform()
     model = exported_model(scene)
     places = model.chosen(tuple(outputs) or tuple(scene.outputs()) or tuple(model.places))

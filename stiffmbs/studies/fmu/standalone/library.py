@@ -19,6 +19,8 @@ from ....compile.machine.routines import Routine
 from ....errors import InputError
 
 C_CODE = Path(__file__).parent / "c"
+HEADERS = C_CODE / "fmi"
+"""Headers of the FMI standard, as published."""
 SOURCES = ("instance.c", "fmu2.c", "fmu3.c")
 OPTIONS = ("-shared", "-fPIC", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fno-math-errno", "-s")
 COMPILERS = ("cc", "gcc", "clang")
@@ -105,6 +107,7 @@ def linked_library(folder: Path, code: Sequence[bytes], texts: Mapping[str, str]
         *OPTIONS,
         f"-I{folder}",
         f"-I{C_CODE}",
+        f"-I{HEADERS}",
         *map(str, [*sources, *objects]),
         "-lm",
         "-o",
