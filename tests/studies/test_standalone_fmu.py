@@ -270,6 +270,34 @@ print(json.dumps([late, at, values(made, "pusher.fx"), refused(other.setupExperi
     assert "up to the stop time" in said and "for the start time of the scene" in said
 
 
+def test_a_motion_without_formulas_of_time_may_go_on(built):
+    """Beyond the run of the scene, and from another time; a formula of the motion is none of time."""
+    fmu = built(SCENE.replace("[push, 0]", "[push - 3*sled.vx*abs(sled.vx), 0]"))
+    script = """
+made = FMU2Slave(guid=about.guid, unzipDirectory=extract(path), modelIdentifier="pushed", instanceName="a")
+made.instantiate(loggingOn=True)
+made.setupExperiment(startTime=5.0)
+made.enterInitializationMode()
+made.exitInitializationMode()
+made.doStep(5.0, 2.5)
+print(json.dumps(values(made, "sled.x", "sled.vx")))
+"""
+    run = stiffmbs.run(stiffmbs.load_scene(fmu.with_suffix(".yaml")), duration=2.5, points=3, rtol=1e-11)
+    assert told_by(script, fmu)[0] == pytest.approx([run["sled.x"][-1], run["sled.vx"][-1]], abs=1e-7)
+
+
+def test_a_force_that_chatters_ends_a_step(built):
+    """A sled that a relay brings to rest; the step before is not affected."""
+    fmu = built(SCENE.replace("[push, 0]", "[-20 N*sign(sled.vx) + push, 0]"))
+    script = """
+made = instance()
+made.doStep(0.0, 0.01)
+print(json.dumps([refused(made.doStep, 0.01, 1.0), values(made, "sled.vx")]))
+"""
+    (ended, (speed,)), said = told_by(script, fmu)
+    assert ended and abs(speed) < 1e-6 and "a force chatters" in said
+
+
 def test_a_start_may_be_set(built):
     """States of a pendulum are brought to the nearest ones that satisfy its joint."""
     text = "bodies: {bar: {mass: 1, inertia: 0.1, position: [1, 0]}}\njoints: {pin: {type: revolute, i: {body: bar, point: [-1, 0]}, j: ground}}"

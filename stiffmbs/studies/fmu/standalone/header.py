@@ -41,14 +41,14 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
         "N_Q": system.n_q, "N_U": system.n_u, "N_C": system.n_c, "N_OUTPUT": system.n_values("output"), "N_JUDGED": len(JUDGED),
         "KINETIC": JUDGED.index("kinetic"), "POTENTIAL": JUDGED.index("potential"), "N_EVENTS": system.n_event_functions,
         "FIRST_LIMIT": system.first_limit, "N_FOUND": len(watch.found), "N_INPUTS": len(model.inputs), "N_NUMBERS": len(model.numbers),
-        "N_BREAKS": len(model.breakpoints), "OF_TIME": int(system.has_inputs), "N_LINKS": len(image.links), "N_CALLS": len(image.calls),
+        "N_BREAKS": len(model.breakpoints), "OF_TIME": int(model.depends_on_time), "N_LINKS": len(image.links), "N_CALLS": len(image.calls),
         "N_STATES": len(model.states), "N_ALGEBRAIC": len(algebraic), "N_OWN": len(image.own), "N_OWNED": image.n_owned, "IMAGE_SIZE": image.size, "IMAGE_CONTENT": len(image.content),
         "ALIGNMENT": CACHE_LINE, "FIRST_OUTPUT": model.first_output, "FIRST_DERIVATIVE": model.first_derivative, "FIRST_INPUT": model.first_input, "TIME": model.time,
-        "MOST_EVENTS": int(CHATTERING.too_many), **{f"AT_{name}": place for name, place in at.items()},
+        "EVENTS_OF_A_WINDOW": CHATTERING.window, **{f"AT_{name}": place for name, place in at.items()},
     }  # fmt: skip
     numbers = {
         "START_TIME": model.job.grid.start, "STOP_TIME": model.job.grid.end, "ASIDE": model.aside,
-        "POSITION_TOLERANCE": CONSISTENCY.position_tolerance,
+        "POSITION_TOLERANCE": CONSISTENCY.position_tolerance, "MOST_EVENTS": CHATTERING.too_many,
     }  # fmt: skip
     x = np.concatenate([start.q, start.u])
     number_rows = [

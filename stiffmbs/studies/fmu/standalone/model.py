@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....analyses.job import Job, prepare
+from ....compile.inputs.of_time import expressions_of, given_to
 from ....compile.machine.image import Image, image_of
 from ....compile.machine.layout import Addressed
 from ....compile.reactions import reactions
@@ -75,6 +76,14 @@ class ExportedModel:
     def dynamics(self) -> Dynamics:
         """Dynamics of the whole model, without the presolve."""
         return self.job.dynamics
+
+    @property
+    def depends_on_time(self) -> bool:
+        """True if a formula or a table is one of time, whose breakpoints are known for the run of the scene alone."""
+        system = self.dynamics.system
+        given = given_to(system)
+        elements = (element for group in system.groups if group.has_inputs for element in group.elements)
+        return any(True for element in elements for _ in expressions_of(element, given))
 
     @property
     def first_output(self) -> int:

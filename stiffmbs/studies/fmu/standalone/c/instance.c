@@ -205,10 +205,20 @@ const char *restart(instance *i) {
     return NULL;
 }
 
+/* Return true if events have come so fast, over two windows, that too many more are expected up to a time. */
+static int chatters(word events, double t, double end, double *since, int *fast) {
+    if (events % EVENTS_OF_A_WINDOW) return 0;
+    *fast = (end - t) * EVENTS_OF_A_WINDOW > MOST_EVENTS * (t - *since) ? *fast + 1 : 0;
+    *since = t;
+    return *fast > 1;
+}
+
 /* Integrate to a time, with restarts at events and at breakpoints of inputs. */
 const char *advance(instance *i, double end) {
     word *table = word_at(i, AT_EXPLICIT), events = 0;
     const char *fault = NULL;
+    double since = i->t;
+    int fast = 0;
     while (i->t < end) {
         if (i->next_break < N_BREAKS && i->t >= breaks[i->next_break] - ASIDE) {
             if (end <= breaks[i->next_break] + ASIDE) break; /* the end is at the breakpoint: its values are those before it */
@@ -225,7 +235,7 @@ const char *advance(instance *i, double end) {
         forget(i);
         if (status < 0) return reason(status);
         if (status == AT_EVENT) {
-            if (++events > MOST_EVENTS) return "a force chatters: its events do not end";
+            if (chatters(++events, i->t, end, &since, &fast)) return "a force chatters: its events do not end";
             i->must_restart = 1;
         }
     }
