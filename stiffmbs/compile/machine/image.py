@@ -10,7 +10,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -20,6 +20,17 @@ WORD = np.dtype(np.int64).itemsize
 """Bytes of a word of a table."""
 EMPTIED = ("capacity", "ready")
 """Cells that are zero in tables whose own arrays are not allocated."""
+
+
+class Block(NamedTuple):
+    """Offset of a block of memory in an image, and its size, bytes."""
+
+    offset: int
+    size: int
+
+
+Blocks: TypeAlias = dict[int, Block]
+"""Blocks of memory by their addresses."""
 
 
 @dataclass(frozen=True)
@@ -40,26 +51,15 @@ class Image:
     functions: tuple[Addressed, ...]
     own: np.ndarray
     n_owned: int
-    _blocks: dict[int, tuple[int, int]]
+    _blocks: Blocks
 
     def at(self, array: np.ndarray) -> int:
         """Return the offset of an array of the image."""
-        return self._at(address(array))
+        return _offset(self._blocks, array)
 
     def cell(self, table: Table, name: str) -> int:
         """Return the offset of a column of a table."""
         return self.at(table) + WORD * table.layout.columns[name]
-
-    def _at(self, place: int) -> int:
-        first = int(np.searchsorted(self._starts, place, "right")) - 1
-        start = int(self._starts[first])
-        offset, size = self._blocks[start]
-        assert first >= 0 and place < start + size, hex(place)
-        return offset + place - start
-
-    @cached_property
-    def _starts(self) -> np.ndarray:
-        return np.array(sorted(self._blocks), dtype=np.int64)
 
     def relocated(self) -> np.ndarray:
         """Return an instance in memory of its own, with the functions of this process: the words of the block."""
@@ -73,25 +73,16 @@ class Image:
 
 def image_of(tables: Iterable[Table], more: Iterable[np.ndarray] = ()) -> Image:
     """Return the image of some tables and of everything that they reach, and of more arrays."""
-    reached = {address(table): table for table in _reached(tables)}
-    arrays = [target for table in reached.values() for target in table.links.values() if isinstance(target, np.ndarray)]
-    blocks = _blocks([*reached.values(), *arrays, *more])
-    stored = {start: ctypes.string_at(start, size) for start, size in blocks.items()}
-    order = sorted(blocks, key=lambda start: not any(stored[start]))  # those of zeros at the end
-    offsets, size = {}, 0
-    for start in order:  # at cache lines, so that the offsets do not depend on the addresses
-        offsets[start] = size, blocks[start]
-        size += blocks[start] + -blocks[start] % CACHE_LINE
-    found = Image(b"", size, *(np.empty((0, 2), dtype=np.int64),) * 2, (), np.empty(0, dtype=np.int64), 0, offsets)
-    words = np.zeros(size, dtype=np.uint8)
-    for start, (offset, count) in offsets.items():
-        words[offset : offset + count] = np.frombuffer(stored[start], dtype=np.uint8)
-    words = words.view(np.int64)
-    links, calls, functions = [], [], dict[int, tuple[int, Addressed]]()
+    reached = list(_reached(tables))
+    arrays = [target for table in reached for target in table.links.values() if isinstance(target, np.ndarray)]
+    blocks, words = _copied(_blocks([*reached, *arrays, *more]))
+    links: list[tuple[int, int]] = []
+    calls: list[tuple[int, int]] = []
+    functions: dict[int, tuple[int, Addressed]] = {}
     owned: list[int] = []
     emptied: list[int] = []
-    for table in reached.values():
-        first = found.at(table)
+    for table in reached:
+        first = _offset(blocks, table)
         for column, target in table.links.items():
             place = first + WORD * column
             words[place // WORD] = 0
@@ -99,16 +90,40 @@ def image_of(tables: Iterable[Table], more: Iterable[np.ndarray] = ()) -> Image:
                 number, _ = functions.setdefault(target.address, (len(functions), target))
                 calls.append((place, number))
             elif target.size:
-                links.append((place, found.at(target)))
+                links.append((place, _offset(blocks, target)))
         addresses, cells = _own(table.layout)
         owned += [first + WORD * column for column in addresses]
         emptied += [first + WORD * column for column in cells]
     words[np.array(owned + emptied, dtype=np.int64) // WORD] = 0
-    content = words[: int(np.flatnonzero(words)[-1]) + 1] if words.any() else words[:0]
+    filled = np.flatnonzero(words)
     return Image(
-        content.tobytes(), size, _pairs(links), _pairs(calls), tuple(function for _, function in functions.values()),
-        np.array(owned + emptied, dtype=np.int64), len(owned), offsets,
+        words[: filled[-1] + 1 if len(filled) else 0].tobytes(), WORD * len(words), _pairs(links), _pairs(calls),
+        tuple(function for _, function in functions.values()), np.array(owned + emptied, dtype=np.int64), len(owned), blocks,
     )  # fmt: skip
+
+
+def _copied(sizes: dict[int, int]) -> tuple[Blocks, np.ndarray]:
+    """Return the places of blocks in an image, and their content; those of zeros are at the end.
+
+    Blocks begin at cache lines, so that their offsets do not depend on their addresses.
+    """
+    stored = {start: ctypes.string_at(start, size) for start, size in sizes.items()}
+    blocks, end = {}, 0
+    for start in sorted(sizes, key=lambda start: not any(stored[start])):
+        blocks[start] = Block(end, sizes[start])
+        end += sizes[start] + -sizes[start] % CACHE_LINE
+    words = np.zeros(end, dtype=np.uint8)
+    for start, block in blocks.items():
+        words[block.offset : block.offset + block.size] = np.frombuffer(stored[start], dtype=np.uint8)
+    return blocks, words.view(np.int64)
+
+
+def _offset(blocks: Blocks, array: np.ndarray) -> int:
+    """Return the offset of an array in an image."""
+    place = address(array)
+    start = max(start for start in blocks if start <= place)
+    assert place < start + blocks[start].size, hex(place)
+    return blocks[start].offset + place - start
 
 
 def _pairs(found: list[tuple[int, int]]) -> np.ndarray:
