@@ -4,8 +4,8 @@
 
 OTHER is the folder of another checkout, as `git worktree add` makes one.  A PROBLEM is a name that `python -m tests.bench` knows, a
 file such as `examples/chain.yaml`, or `examples` for all of these; all problems by default, cars on their manoeuvres among them.
-A line for each solver and tolerance: the median of the ratios of two solutions that follow each other, this version's time over
-the other's, and the least times of both.  Last the geometric mean of all ratios.
+A line for each solver and tolerance: the median of the ratios of two solutions that follow each other, this version's processor
+time over the other's, and the least times of both.  Last the geometric mean of all ratios.
 """
 
 from __future__ import annotations
@@ -88,9 +88,9 @@ def answers() -> None:
                 if at_hand[0] != question:
                     at_hand = question, known[question[0]][question[1]](question[2])
                     at_hand[1]()
-                begun = time.perf_counter()
+                begun = time.process_time()
                 at_hand[1]()
-                answer = time.perf_counter() - begun
+                answer = time.process_time() - begun
         except (failed, StiffmbsError):
             answer = None
         print(json.dumps(answer), flush=True)

@@ -15,6 +15,7 @@ from stiffmbs.elements.spatial.forces.applied import AppliedTorque as _AppliedTo
 from stiffmbs.elements.spatial.forces.beam import Beam as _Beam
 from stiffmbs.elements.spatial.forces.brake import Brake as _Brake
 from stiffmbs.elements.spatial.forces.bushing import Bushing as _Bushing
+from stiffmbs.elements.spatial.forces.capsule_impact import CapsuleImpact as _CapsuleImpact
 from stiffmbs.elements.spatial.forces.exact_beam import BeamSection as _BeamSection
 from stiffmbs.elements.spatial.forces.exact_beam import ExactBeam as _ExactBeam
 from stiffmbs.elements.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
@@ -224,6 +225,28 @@ class Bushing(_Bushing):
         law_about_z: given.Curve | None = ...,
         axes: Literal["j", "ground"] = ...,
         type: Literal["bushing"] = ...,
+    ) -> None: ...
+
+class CapsuleImpact(_CapsuleImpact):
+    """Contact of two capsules at the points of their axes that are nearest to each other."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        radius: given.Number,
+        length: given.Number = ...,
+        other_radius: given.Number,
+        other_length: given.Number = ...,
+        type: Literal["capsule_impact"] = ...,
     ) -> None: ...
 
 class ConstantVelocity(_ConstantVelocity):

@@ -108,8 +108,10 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
             break
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run {how} ended early; use --verify")
+    pieces = 1 + sum(int(trajectory.statistics.get(name, 0)) for name in ("events", "breakpoints"))
+    close = ESTIMATE.beside * float(np.ptp(times)) / pieces if grid.times is None else 0.0
     found = bars_by_difference(
-        times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once
+        times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once, close
     )
     return with_bars(replace(solution, errors=found), job.settings, job.dynamics, trajectory)
 

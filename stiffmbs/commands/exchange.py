@@ -17,6 +17,15 @@ from .scene import CHANGES, assigned, file_beside, is_written, option, output_op
 
 DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
 
+OPTIONS_OF_ROBOTS = {
+    "coordinates": "--at",
+    "limits": "--limits",
+    "contacts": "--contacts",
+    "ground": "--ground",
+    "free_root": "--free-root",
+}
+"""Options for robots by the arguments of `load_robot`."""
+
 
 @click.command(short_help="Convert datasets, robots and assemblies to scenes, and scenes to datasets and assemblies.")
 @click.argument("scene")
@@ -28,10 +37,13 @@ DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
     "coordinates",
 )
 @option("--limits", "Hold the joints of a robot within their limits by stops.")
+@option("--contacts", "Add the contacts between shapes of a robot that its file states.")
+@option("--ground HEIGHT", "Add a level ground plane, and contacts with it; height in m.", type=float)
+@option("--free-root", "Let the root link of a URDF file move freely; by default it is fixed to ground.")
 @CHANGES
 def convert(
-    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool,
-    changes: list[tuple[str, str]],
+    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool, contacts: bool,
+    ground: float | None, free_root: bool, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Convert an Adams/Solver dataset (.adm), a robot (URDF, SDF, MJCF) or an assembly (Simscape Multibody XML, .asmt) to a scene,
     or a planar scene to space.
@@ -48,8 +60,12 @@ def convert(
         refuse_own_input("-o", scene, output)
         of_robot: dict[str, Any] = {"coordinates": assigned(AT, coordinates, float)} if coordinates else {}
         of_robot |= {"limits": True} if limits else {}
+        of_robot |= {"contacts": True} if contacts else {}
+        of_robot |= {"ground": ground} if ground is not None else {}
+        of_robot |= {"free_root": True} if free_root else {}
         if of_robot and (in_space or not _is_robot(scene)):
-            raise InputError(f"{scene}: found {'--at' if coordinates else '--limits'}, expected it with a robot alone")
+            given = OPTIONS_OF_ROBOTS[next(iter(of_robot))]
+            raise InputError(f"{scene}: found {given}, expected it with a robot alone")
         if output is not None and output.suffix.lower() in (DATASET, ASSEMBLY):
             texts = _exported(scene, output, of_robot, changes)
         else:

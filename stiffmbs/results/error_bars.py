@@ -236,18 +236,21 @@ def _both_ends(
 
 def bars_by_difference(
     times: np.ndarray, at: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float,
-    restarts: np.ndarray, numbers_at_once: int,
+    restarts: np.ndarray, numbers_at_once: int, close: float = 0.0,
 ) -> dict[str, ErrorBar]:  # fmt: skip
     """Return the error bars of the channels of a run, from those of a run with another tolerance, at more times.
+
+    A jump between two times of the run that are closer than `close`, s, is no error: the other run may be on its other side.
 
     `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
     `restarts`: times from which on channels may have jumped, s. `numbers_at_once`: as of `bars`.
     """
-    errors = {
-        name: np.abs(difference(name, values, others[name][at])) / abs(1.0 - part)
-        for name, values in channels.items()
-        if not name.startswith("constraint.")
-    }
+    near = np.diff(times[at]) < close
+    errors = {}
+    for name, values in channels.items():
+        if not name.startswith("constraint."):
+            error = np.abs(difference(name, values, others[name][at]))
+            errors[name] = np.maximum(error - _change_beside(values, near), 0.0) / abs(1.0 - part)
     found = dict.fromkeys(errors, UNKNOWN)
     known = [name for name, error in errors.items() if not np.isnan(error).all()]
     ends = _both_ends(times, ((others[name], channels[name]) for name in known), at, restarts, numbers_at_once)
@@ -256,6 +259,12 @@ def bars_by_difference(
         least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
         found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
     return found
+
+
+def _change_beside(values: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Return the larger change of a channel to those of its two neighbouring values that are near."""
+    change = np.where(near, np.abs(np.diff(values)), 0.0)
+    return np.maximum(np.append(change, 0.0), np.append(0.0, change))
 
 
 def difference(name: str, values: np.ndarray, others: np.ndarray) -> np.ndarray:

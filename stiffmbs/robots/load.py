@@ -15,7 +15,7 @@ from ..model.scene import Scene
 from ..reading.files.text_file import file_text, source_name
 from ..reading.files.xml_nodes import FileFault
 from ..reading.files.yaml_text import scene_text
-from .robot import Robot
+from .robot import Robot, RobotFault
 from .scene.scene import scene
 
 URDF, SDF = ".urdf", (".sdf", ".world")
@@ -30,6 +30,9 @@ def load_robot(
     coordinates: Mapping[str, float] = AS_DRAWN,
     rates: Mapping[str, float] = AS_DRAWN,
     limits: bool = False,
+    contacts: bool = False,
+    ground: float | None = None,
+    free_root: bool = False,
 ) -> Scene:
     """Read a scene from a robot file.
 
@@ -43,13 +46,20 @@ def load_robot(
         Initial coordinates of hinges and slides, rad or m, and their rates, by joint; others are as drawn, and at rest.
     limits : bool, optional
         True to hold joints within their limits by stops (`stiffmbs.robots.scene.limits`). By default a note lists the limits.
+    contacts : bool, optional
+        True for contacts of the shapes that may touch according to the file (`stiffmbs.robots.scene.contacts`). By default there are none.
+    ground : float, optional
+        Height of an added ground plane, m, which all shapes touch; `contacts` is then True.
+    free_root : bool, optional
+        True if the root link of a URDF file moves freely. By default it is fixed to ground.
 
     Raises
     ------
     InputError
         If the file cannot be read, or its robot is not a valid scene.
     """
-    return made_scene(_found(path, coordinates, rates, limits), changes, source_name(path), lambda _: None)
+    found = _found(path, coordinates, rates, limits, contacts, ground, free_root)
+    return made_scene(found, changes, source_name(path), lambda _: None)
 
 
 def convert_robot(
@@ -58,17 +68,27 @@ def convert_robot(
     coordinates: Mapping[str, float] = AS_DRAWN,
     rates: Mapping[str, float] = AS_DRAWN,
     limits: bool = False,
+    contacts: bool = False,
+    ground: float | None = None,
+    free_root: bool = False,
 ) -> str:
     """Return the scene of a robot file as the text of a scene file; parameters and errors as `load_robot`."""
-    load_robot(path, coordinates=coordinates, rates=rates, limits=limits)  # raises errors of the scene
-    return scene_text(_found(path, coordinates, rates, limits))
+    how = (coordinates, rates, limits, contacts, ground, free_root)
+    made_scene(_found(path, *how), (), source_name(path), lambda _: None)  # raises errors of the scene
+    return scene_text(_found(path, *how))
 
 
 def _found(
-    path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float], limits: bool
+    path: str | Path,
+    coordinates: Mapping[str, float],
+    rates: Mapping[str, float],
+    limits: bool,
+    contacts: bool,
+    ground: float | None,
+    free_root: bool,
 ) -> dict[str, object]:
     try:
-        return scene(_read(path), coordinates, rates, limits)
+        return scene(_read(path, contacts or ground is not None, ground, free_root), coordinates, rates, limits)
     except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
     except RecursionError:
@@ -77,15 +97,19 @@ def _found(
         raise InputError(f"{source_name(path)}: {BEYOND}") from None
 
 
-def _read(path: str | Path) -> Robot:
+def _read(path: str | Path, contacts: bool, ground: float | None, free_root: bool) -> Robot:
     if Path(path).suffix.lower() == URDF:
         from .urdf import read_urdf
 
-        return read_urdf(file_text(path))
+        return read_urdf(file_text(path), contacts, ground, free_root)
+    if free_root:
+        raise RobotFault(
+            "found that the root is free, expected it with a URDF file: other formats state which links move"
+        )
     if Path(path).suffix.lower() in SDF:
         from .sdf.read import read_sdf
 
-        return read_sdf(Path(path))
+        return read_sdf(Path(path), contacts, ground)
     from .mjcf.model import read_mjcf
 
-    return read_mjcf(path)
+    return read_mjcf(path, contacts, ground)

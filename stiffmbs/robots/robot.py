@@ -11,6 +11,7 @@ import numpy as np
 from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY
 from ..reading.files.xml_nodes import FileFault
+from .contact import Contact
 
 JointKind = Literal["hinge", "slide", "screw", "ball", "free"]
 
@@ -39,6 +40,7 @@ class LinkJoint:
     friction: float = 0.0  # magnitude of the dry friction, N m or N
     armature: float = 0.0  # inertia of the rotor reflected to the joint, kg m^2 or kg
     limits: tuple[float, float] | None = None  # limits of the coordinate, rad or m
+    speed: float | None = None  # largest magnitude of the coordinate's rate, rad/s or m/s
     effort: tuple[float, float] | None = None  # bounds of the force of all actuators on the coordinate, N m or N
     zero: float = 0.0  # coordinate at the pose given by its `Link`, rad or m
     pitch: float = 0.0  # advance of a screw along its axis in one revolution, m; its coordinate is the angle
@@ -47,6 +49,11 @@ class LinkJoint:
     def is_single(self) -> bool:
         """True for a joint with one coordinate."""
         return self.kind in ("hinge", "slide", "screw")
+
+    @property
+    def is_limited(self) -> bool:
+        """True for a joint with limits of its coordinate or speed."""
+        return self.limits is not None or self.speed is not None
 
     @property
     def is_rotary(self) -> bool:
@@ -163,6 +170,7 @@ class Robot:
     relations: tuple[Relation, ...] = ()
     connections: tuple[Connection, ...] = ()
     closures: tuple[Closure, ...] = ()
+    contacts: tuple[Contact, ...] = ()
     notes: tuple[str, ...] = ()
 
     def joints(self) -> dict[str, LinkJoint]:

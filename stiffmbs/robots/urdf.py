@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..elements.spatial.marker import ORIGIN
-from ..elements.spatial.orientation import IDENTITY, about, matrix, product
+from ..elements.spatial.orientation import matrix
 from ..reading.files.requested import unused_notes
 from ..reading.files.xml_nodes import Node, parsed
 from .robot import JointKind, Link, LinkJoint, Relation, Robot, RobotFault, Transmission
+from .urdf_contacts import contacts as touching
+from .urdf_values import numbers, origin, value_of
 
 KINDS: dict[str, JointKind] = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "floating": "free"}
 OF_ONE_COORDINATE = ("revolute", "continuous", "prismatic")
@@ -30,14 +33,21 @@ REASONS: Mapping[str, Mapping[str, str]] = {
     **{f"transmission{below}": {"*": HARDWARE} for below in ("", "/joint")},
 }  # fmt: skip
 """Reasons why attributes and children have no effect."""
+WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
+    **REASONS, "link": {"<visual>": "graphics"}, "robot": {"<material>": "graphics"},
+    "link/collision/geometry/mesh": {"*": "meshes have no contact"},
+}  # fmt: skip
+"""Reasons if the shapes of contacts are read."""
 
 
-def read_urdf(text: str) -> Robot:
+def read_urdf(text: str, contacts: bool = False, ground: float | None = None, free_root: bool = False) -> Robot:
     """Read a robot from the text of a URDF file.
 
-    The root link is fixed to ground. Joints with a ``<transmission>`` have an effort as input. If the file has no
-    transmission, joints with a positive effort limit have one. Raises RobotFault if the text is not URDF, or its links
-    and joints are not a tree; names the link or joint.
+    `contacts`: True to read the shapes of ``<collision>``. `ground`: height of the plane that they touch, m.
+    `free_root`: True if the root link moves freely; by default it is fixed to ground. Joints with a
+    ``<transmission>`` have an effort as input. If the file has no transmission, joints with a positive effort limit
+    have one. Raises RobotFault if the text is not URDF, or its links and joints are not a tree; names the link or
+    joint.
     """
     root = _parsed(text)
     links = dict(_named(root, "link"))
@@ -49,12 +59,15 @@ def read_urdf(text: str) -> Robot:
     moving = [name for name in child_of.values() if joints[name].get("type") != FIXED]
     read: dict[str, Any] = {
         "name": root.get("name") or "robot",
-        "links": tuple(_link(name, links[name], child_of.get(name), joints) for name in ordered),
+        "links": tuple(_link(name, links[name], child_of.get(name), joints, free_root) for name in ordered),
         "transmissions": tuple(_efforts(root, {name: joints[name] for name in moving})),
         "relations": tuple(_mimics(joints, child_of)),
     }
-    own = (f"the root link {ordered[0]} is fixed to ground", *_still(joints))
-    return Robot(**read, notes=(*own, *unused_notes(root.fields(), REASONS)))
+    own = [f"the root link {ordered[0]} {'moves freely' if free_root else 'is fixed to ground'}", *_still(joints)]
+    if contacts:
+        read["contacts"], of_contacts = touching(root, links, ground)
+        own += of_contacts
+    return Robot(**read, notes=(*own, *unused_notes(root.fields(), WITH_CONTACTS if contacts else REASONS)))
 
 
 def _parsed(text: str) -> Node:
@@ -121,12 +134,13 @@ def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: di
     return ordered
 
 
-def _link(name: str, element: Node, joint: str | None, joints: dict[str, Node]) -> Link:
+def _link(name: str, element: Node, joint: str | None, joints: dict[str, Node], free_root: bool) -> Link:
     mass, centre, inertia = _inertial(name, element.find("inertial"))
     if joint is None:
-        return Link(name, None, mass=mass, center_of_mass=centre, inertia=inertia)
+        free = (LinkJoint(f"{name}_free", "free"),) if free_root else ()
+        return Link(name, None, mass=mass, center_of_mass=centre, inertia=inertia, joints=free)
     carrier = joints[joint]
-    position, orientation = _origin(f"joint {joint}", carrier)
+    position, orientation = origin(f"joint {joint}", carrier)
     return Link(
         name, _end(carrier, "parent"), position, orientation, mass, centre, inertia, tuple(_moving(joint, carrier))
     )
@@ -137,10 +151,10 @@ def _inertial(name: str, element: Node | None) -> tuple[float, tuple[float, ...]
     if element is None:
         return 0.0, ORIGIN, np.zeros((3, 3))
     where = f"link {name}"
-    centre, turned = _origin(where, element)
-    mass = _value(where, element.find("mass"), "value", 0.0)
+    centre, turned = origin(where, element)
+    mass = value_of(where, element.find("mass"), "value", 0.0)
     moments = element.find("inertia")
-    xx, xy, xz, yy, yz, zz = (_value(where, moments, key, 0.0) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    xx, xy, xz, yy, yz, zz = (value_of(where, moments, key, 0.0) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
     A = matrix(turned)
     tensor = A @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ A.T
     if mass < 0:
@@ -159,7 +173,7 @@ def _moving(name: str, element: Node) -> Iterator[LinkJoint]:
         yield LinkJoint(name, KINDS[kind], axis=axis)
         return
     dynamics, limits = element.find("dynamics"), element.find("limit")
-    damping = _value(where, dynamics, "damping", 0.0)
+    damping = value_of(where, dynamics, "damping", 0.0)
     if kind == PLANAR:
         across = np.linalg.svd(np.array([axis]))[2][1:]
         for letter, direction in zip("xy", across, strict=True):
@@ -168,14 +182,16 @@ def _moving(name: str, element: Node) -> Iterator[LinkJoint]:
         return
     bounds = None
     if limits is not None and kind in ("revolute", "prismatic"):
-        bounds = (_value(where, limits, "lower", 0.0), _value(where, limits, "upper", 0.0))
-    friction = _value(where, dynamics, "friction", 0.0)
-    yield LinkJoint(name, KINDS[kind or ""], axis=axis, damping=damping, friction=friction, limits=bounds)
+        bounds = (value_of(where, limits, "lower", 0.0), value_of(where, limits, "upper", 0.0))
+    friction = value_of(where, dynamics, "friction", 0.0)
+    speed = value_of(where, limits, "velocity", 0.0)
+    moving = LinkJoint(name, KINDS[kind or ""], axis=axis, damping=damping, friction=friction, limits=bounds)
+    yield replace(moving, speed=speed) if speed > 0 else moving
 
 
 def _axis(name: str, element: Node) -> tuple[float, ...]:
     given = element.find("axis")
-    axis = np.array(_numbers(f"joint {name}", "axis", given.get("xyz") or "1 0 0" if given is not None else "1 0 0"))
+    axis = np.array(numbers(f"joint {name}", "axis", given.get("xyz") or "1 0 0" if given is not None else "1 0 0"))
     length = float(np.linalg.norm(axis))
     if length == 0:
         raise RobotFault(f"joint {name}: found an axis of length 0, expected a direction")
@@ -186,7 +202,7 @@ def _efforts(root: Node, moving: dict[str, Node]) -> Iterator[Transmission]:
     given = [joint.get("name") for joint in root.findall("transmission/joint")]
     for name, element in moving.items():
         limit = element.find("limit")
-        effort = 0.0 if limit is None else _value(f"joint {name}", limit, "effort", 0.0)
+        effort = 0.0 if limit is None else value_of(f"joint {name}", limit, "effort", 0.0)
         driven = name in given if given else effort > 0
         if driven and element.get("type") in OF_ONE_COORDINATE and element.find("mimic") is None:
             yield Transmission(
@@ -211,7 +227,7 @@ def _mimics(joints: dict[str, Node], child_of: dict[str, str]) -> Iterator[Relat
             raise RobotFault(
                 f"{where}: found that it mimics {other}, expected a revolute, continuous, prismatic or fixed joint"
             )
-        multiplier, offset = _value(where, mimic, "multiplier", 1.0), _value(where, mimic, "offset", 0.0)
+        multiplier, offset = value_of(where, mimic, "multiplier", 1.0), value_of(where, mimic, "offset", 0.0)
         if joints[other].get("type") == FIXED:
             yield Relation(f"{name}_mimic", name, None, (offset,))
         else:
@@ -227,36 +243,3 @@ def _still(joints: dict[str, Node]) -> Iterator[str]:
             element.without_effect(*OF_MOTION)
     if found:
         yield f"'mimic' has no effect on fixed joints: {', '.join(found)}"
-
-
-def _origin(where: str, element: Node) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return position and orientation of an <origin>: roll, pitch and yaw about the fixed axes x, y and z."""
-    origin = element.find("origin")
-    if origin is None:
-        return ORIGIN, IDENTITY
-    roll, pitch, yaw = _numbers(where, "rpy", origin.get("rpy") or "0 0 0")
-    turned = product(product(about(2, yaw), about(1, pitch)), about(0, roll))
-    return tuple(_numbers(where, "xyz", origin.get("xyz") or "0 0 0")), turned
-
-
-def _numbers(where: str, key: str, text: str) -> list[float]:
-    try:
-        found = [float(word) for word in text.split()]
-    except ValueError:
-        found = []
-    if len(found) != 3 or not np.all(np.isfinite(found)):
-        raise RobotFault(f"{where}: found {key}='{text}', expected three numbers")
-    return found
-
-
-def _value(where: str, element: Node | None, key: str, default: float) -> float:
-    text = None if element is None else element.get(key)
-    if text is None:
-        return default
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
-        raise RobotFault(f"{where}: found {key}='{text}', expected a number")
-    return value

@@ -11,12 +11,13 @@ starts again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from ..compile.inputs.features import InputFeatures
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
@@ -25,6 +26,7 @@ from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import MOST_LISTED
+from .events.discontinuity import Jumps
 from .events.restart import restarted
 from .ida.native.parameters import LOOP
 from .trajectory import (
@@ -58,16 +60,17 @@ def solved_between_samples(
     system = dynamics.system
     if not system.sampled.any():
         return solve(dynamics, start, grid, settings, watch)
-    dynamics.input_features(grid.start, grid.end)  # once for all intervals
-    left = list(samples(system, grid))
+    features = dynamics.input_features(grid.start, grid.end)  # once for all intervals
+    left = _before_breakpoints(samples(system, grid), grid, features)
     watched, grid = grid.monitor, replace(grid, monitor=None)  # rows past a sample do not have its values yet
     acts, own = _acting(system), slice(system.first_state, None)
     parts: list[Trajectory] = []
+    jumps = Jumps(dynamics, settings)
     now, t, idle, finer = start, grid.start, 0, 1
     with Ending() as ending:
         if left[0].t == grid.start:
             values = next_values(dynamics, left[0], start.q, start.u)
-            now, t = _restarted(dynamics, left.pop(0).t, start.q, start.u, values, settings)
+            now, t = _restarted(dynamics, left.pop(0).t, start.q, start.u, values, settings, jumps)
         while left:
             passes = grid.times is not None or watched
             ahead = left[: min(max(idle, 1), LOOP.most_passed) if passes else 1]
@@ -96,8 +99,8 @@ def solved_between_samples(
                 break
             del left[:number]
             if left:
-                now, t = _restarted(dynamics, sample.t, found.q[row], found.u[row], values, settings)
-    return _joined(parts, start, grid, ending)
+                now, t = _restarted(dynamics, sample.t, found.q[row], found.u[row], values, settings, jumps)
+    return _joined(parts, start, grid, ending, jumps.sentence())
 
 
 HELD = NoteKind("sampled-states-held", "sampled states keep their values: {names}", severity=Severity.REMARK)
@@ -131,6 +134,17 @@ def samples(system: System, grid: Grid) -> Iterator[Sample]:
         yield Sample(time, states[due])
         number[due] += 1
     yield Sample(grid.end, np.empty(0, dtype=int))
+
+
+def _before_breakpoints(found: Iterable[Sample], grid: Grid, features: InputFeatures) -> list[Sample]:
+    """Return samples of which those at breakpoints are just before them, as output times are."""
+    listed = list(found)
+    times = np.array([sample.t for sample in listed])
+    before = grid.before(times, features)
+    moved = times - before > 0.5 * grid.aside  # a sample at an output time is there already, up to rounding
+    return [
+        sample._replace(t=t) if by else sample for sample, t, by in zip(listed, before.tolist(), moved, strict=True)
+    ]
 
 
 def restarts(dynamics: Dynamics, grid: Grid) -> np.ndarray:
@@ -172,11 +186,18 @@ def _acting(system: System) -> np.ndarray:
 
 
 def _restarted(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, values: np.ndarray, settings: RunSettings
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, values: np.ndarray, settings: RunSettings, jumps: Jumps
 ) -> tuple[InitialValues, float]:
-    """Return consistent values with given states just after a time, and that time."""
+    """Return consistent values with given states just after a time and after a breakpoint there, and the time of the restart.
+
+    `jumps`: velocities that jump at such a breakpoint are noted there.
+    """
     after = np.append(q[: dynamics.system.first_state], values)
-    return restarted(dynamics, just_after(t), after, u, settings.projection), just_after(t)
+    begins = max(just_after(t), dynamics.sides(t)[1])
+    begun = restarted(dynamics, begins, after, u, settings.projection)
+    if begins > just_after(t):
+        jumps.note(t, after, u)
+    return begun, begins
 
 
 def _up_to(grid: Grid, start: float, ends: Sequence[float], finer: int) -> Grid:
@@ -209,8 +230,11 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     )  # fmt: skip
 
 
-def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: Ending) -> Trajectory:
-    """Join the intervals to one trajectory whose first row is the start, before a sample there."""
+def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: Ending, jumps: str) -> Trajectory:
+    """Join the intervals to one trajectory whose first row is the start, before a sample there.
+
+    `jumps`: sentence on the jumps at restarts.
+    """
     kept = [_output_rows(part, grid) for part in parts]
     first = np.array([grid.start]), start.q[None], start.u[None]
     t, q, u = (np.concatenate(columns) for columns in zip(first, *kept, strict=True))
@@ -218,7 +242,9 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
         ending.outcome, ending.message = parts[-1].outcome, parts[-1].message
     fields = in_common(parts)
     fields["statistics"] = {"steps": 0, "seconds": 0.0, **fields["statistics"]}
-    fields["note"] = "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][:MOST_LISTED])
+    fields["note"] = "; ".join(
+        [*dict.fromkeys(note for note in (*(part.note for part in parts), jumps) if note)][:MOST_LISTED]
+    )
     return Trajectory(t, q, u, ending.outcome, ending.message, **fields)
 
 

@@ -12,7 +12,7 @@ from stiffmbs.elements.forces import friction
 from stiffmbs.elements.joints import point_on_curve
 from stiffmbs.elements.roads import crg, crg_grid, grid, iso8608, reference_line, rolling_filter
 from stiffmbs.elements.spatial import body, branches, massless, orientation, relaxation
-from stiffmbs.elements.spatial.forces import plane_impact, solid_impact, sphere_impact
+from stiffmbs.elements.spatial.forces import capsule_impact, plane_impact, solid_impact, sphere_impact
 from stiffmbs.elements.tyres import fiala, file_fields, passivity, steady_state
 from stiffmbs.errors import InputError
 from tests.decisions.common import BELOW, Record, executed, nothing, reach, reached, refused
@@ -205,6 +205,13 @@ def sine_of_an_upright_axis():
     return reached(lambda: cylinder.touches.__func__(cylinder, equations))
 
 
+def distance_along_parallel_axes():
+    first, second = (Record(point=sp.Integer(0), z=Record(dot=lambda _, k=k: sp.Integer(k))) for k in (1, 2))
+    equations = Record(i=first, j=second, length=sp.Integer(10) ** 20, named=naming(5))
+    capsules = capsule_impact.CapsuleImpact
+    return reached(lambda: capsules.nearest.__func__(capsules, equations))
+
+
 def edge_of_a_box():
     with patch.object(solid_impact, "RoundSolid", lambda rows, _: rows):
         square = solid_impact.round_solid(Record(named=same), "box", (sp.Integer(2),) * 3)[0][1]
@@ -354,6 +361,7 @@ DECISIONS = {
     "elements.spatial.branches:FARTHEST": lambda: count_while(
         lambda angle: not [*branches._too_far(angle, "", "")], range(180)
     ),
+    "elements.spatial.forces.capsule_impact:PARALLEL": distance_along_parallel_axes,
     "elements.spatial.forces.plane_impact:UPRIGHT": sine_of_an_upright_axis,
     "elements.spatial.forces.solid_impact:ROUNDING": edge_of_a_box,
     "elements.spatial.forces.sphere_impact:LEAST_DISTANCE": lambda: float(sphere_impact.length()),
@@ -395,7 +403,7 @@ EXPECTED = {
     "elements.roads.reference_line:SAMPLES_ACROSS": 11, "elements.roads.rolling_filter:FINE": 4801,
     "elements.roads.rolling_filter:BETWEEN": 4801, "elements.roads.rolling_filter:COARSE": 18, "elements.roads.rolling_filter:MOST": 18,
     "elements.roads.rolling_filter:MARGIN": 1.5, "elements.spatial.body:MOMENT_ROUNDING": 27, "elements.spatial.branches:FARTHEST": 60,
-    "elements.spatial.forces.plane_impact:UPRIGHT": 1e-06, "elements.spatial.forces.solid_impact:ROUNDING": 0.0001,
+    "elements.spatial.forces.capsule_impact:PARALLEL": 1e8, "elements.spatial.forces.plane_impact:UPRIGHT": 1e-06, "elements.spatial.forces.solid_impact:ROUNDING": 0.0001,
     "elements.spatial.forces.sphere_impact:LEAST_DISTANCE": 1e-09, "elements.spatial.massless:MASSLESS": 1e-08,
     "elements.spatial.massless:NO_MOMENT": 159, "elements.spatial.orientation:ROUGH": 27, "elements.spatial.orientation:UNIT": 4,
     "elements.spatial.relaxation:LEAST_RELAXATION_LENGTH": 100.0, "elements.spatial.relaxation:DAMPING": 0.02,

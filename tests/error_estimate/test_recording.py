@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.results.error_bars import bars_by_difference
 from tests.solve.test_stiff_reactions import four_bar
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 
@@ -53,3 +54,14 @@ def test_a_jump_at_a_breakpoint_is_no_peak_between_output_times(solver):
     for channel in ("cart.vx", "bob.omega", "bob.vx", "pin.fy", "energy.total"):
         bar, size = solution.errors[channel], np.abs(solution[channel]).max()
         assert max(bar.sampled_least, bar.sampled_greatest) < 1e-3 * size, channel
+
+
+def test_a_jump_at_an_event_between_own_steps_is_no_error():
+    """A second run meets the event a little later: its value just after the own event is that before the jump."""
+    times, at = np.array([0.0, 0.5, 1.0, 1.0 + 1e-6, 1.5, 2.0]), np.arange(6)
+    own, other = np.array([1.0, 2.0, 3.0, 8.0, 9.0, 10.0]), np.array([1.0, 2.0, 3.0, 3.01, 9.1, 10.0])
+    found = [
+        bars_by_difference(times, at, {"f": own}, {"f": other}, 0.0, np.empty(0), 1000, close)["f"].over_time
+        for close in (0.0, 1e-5)
+    ]
+    np.testing.assert_allclose(found, [4.99, 0.1])

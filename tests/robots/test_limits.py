@@ -75,6 +75,43 @@ def test_limits_are_listed_held_or_not(tmp_path):
     assert other.exit_code == 2 and "found --limits, expected it with a robot alone" in other.output
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_brake_slows_a_joint_to_its_largest_speed(tmp_path, sign):
+    """The excess decays with the time constant T; under a constant torque, the torque times T/I is left of it."""
+    path, limit, start = robot(tmp_path, upper=20.0), 2.0, 5.0
+    path.write_text(path.read_text().replace('velocity="0"', f'velocity="{limit}"', 1).replace("-0.5", "-20"))
+    scene = load_robot(path, [("gravity", "[0, 0, 0]")], rates={"shoulder": sign * start}, limits=True)
+    found = stiffmbs.run(scene, duration=0.1, points=101, rtol=1e-9)
+    expected = limit + (start - limit) * np.exp(-found.time / T)
+    np.testing.assert_allclose(sign * found["shoulder.angle_rate"], expected, rtol=1e-6)
+    free = load_robot(path, [("gravity", "[0, 0, 0]")], rates={"shoulder": sign * 1.9}, limits=True)
+    assert sign * stiffmbs.run(free, duration=0.1)["shoulder.angle_rate"][-1] == pytest.approx(1.9, rel=1e-5)
+
+
+@pytest.mark.parametrize(("kind", "file"), [("prismatic", "urdf"), ("continuous", "urdf"), ("revolute", "sdf")])
+def test_speeds_are_read_and_listed(tmp_path, kind, file):
+    """A driven joint has its largest speed and the excess force times T over its inertia."""
+    path, mass = tmp_path / f"a.{file}", 2.0
+    if file == "urdf":
+        path.write_text(
+            f'<robot name="r"><link name="w"/><link name="l"><inertial><mass value="{mass}"/><inertia ixx="2" iyy="2" izz="2" ixy="0" ixz="0"'
+            f' iyz="0"/></inertial></link><joint name="j" type="{kind}"><parent link="w"/><child link="l"/><axis xyz="0 0 1"/>'
+            '<limit lower="-9" upper="9" effort="40" velocity="0.5"/></joint></robot>'
+        )
+    else:
+        path.write_text(
+            f'<sdf version="1.9"><model name="m"><link name="l"><inertial><mass>{mass}</mass><inertia><ixx>2</ixx><iyy>2</iyy><izz>2</izz></inertia>'
+            f'</inertial></link><joint name="j" type="{kind}"><parent>world</parent><child>l</child><axis><xyz>0 0 1</xyz>'
+            "<limit><effort>40</effort><velocity>0.5</velocity></limit></axis></joint></model></sdf>"
+        )
+    unit = "m" if kind == "prismatic" else "rad"
+    assert any("does not hold" in note and f"0.5 {unit}/s" in note for note in load_robot(path).notes)
+    scene = load_robot(path, [("gravity", "[0, 0, 0]"), ("inputs.j_input", "10")], limits=True)
+    found = stiffmbs.run(scene, duration=1.0, rtol=1e-8)
+    rate = found["j.displacement_rate" if kind == "prismatic" else "j.angle_rate"]
+    assert rate[-1] == pytest.approx(0.5 + 10 * T / 2, rel=1e-5)
+
+
 PRESS = """<sdf version="1.9"><model name="press">
   <link name="nut"><pose>0 0 0.1 0 0 0</pose><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.04</izz></inertia></inertial></link>
   <joint name="thread" type="screw"><parent>world</parent><child>nut</child><screw_thread_pitch>{pitch}</screw_thread_pitch>

@@ -234,7 +234,7 @@ def test_what_is_not_used_of_a_link_is_noted(tmp_path, given):
     ("text", "said"),
     [
         (model(link("l") + "<plugin name='p' filename='f'/>"), "(plugins are programs of the simulator): model <plugin> of m"),
-        (model(link("l") + joint("j", "revolute", "world", "l", "<xyz>0 0 1</xyz><limit><velocity>3</velocity></limit>")), "(limits are not held): joint/axis/limit <velocity> of j"),
+        (model(link("l") + joint("j", "revolute", "world", "l", "<xyz>0 0 1</xyz><limit><stiffness>3</stiffness></limit>")), "(limits are not held): joint/axis/limit <stiffness> of j"),
         (model(link("l") + joint("j", "revolute", "world", "l", "<xyz>0 0 1</xyz>", more="<physics/>")), "(settings of the simulator): joint <physics> of j"),
         (SDF.format("1.9", f"<world name='w'><light name='sun'/><state/><model name='m'>{link('l')}</model></world>"), "(graphics): world <light> of w"),
         (SDF.format("1.9", f"<world name='w'><state/><model name='m'>{link('l')}</model></world>"), "(models start where their poses place them): world <state> of w"),

@@ -40,7 +40,6 @@ def test_a_file_of_which_all_is_used_has_no_such_note(tmp_path):
     ("changes", "said"),
     [
         ({"wrist": LIMIT + '<safety_controller k_velocity="3"/>'}, "(limits are not held): joint <safety_controller> of wrist"),
-        ({"wrist": LIMIT.replace("effort", 'velocity="2" effort')}, "(limits are not held): joint/limit velocity of wrist"),
         ({"wrist": LIMIT + '<calibration rising="0.1"/>'}, "joint <calibration> of wrist"),
         ({"wrist": LIMIT + '<dynamics damping="1" spring_stiffness="7"/>'}, "joint/dynamics spring_stiffness of wrist"),
         ({"kind": "continuous", "wrist": LIMIT}, "joint/limit lower of wrist"),

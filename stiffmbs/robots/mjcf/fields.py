@@ -79,6 +79,12 @@ REASONS: Mapping[str, Mapping[str, str]] = {
     "sensor": {"*": "requests of the scene measure"}, "key": {"*": "the scene starts as drawn, or by --at"},
 }  # fmt: skip
 
+WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
+    **REASONS,
+    "geom": {**REASONS["geom"], **dict.fromkeys(("gap", "adhesion", "surfacevel"), "contacts push alone")},
+}  # fmt: skip
+"""Reasons for models whose contacts are read."""
+
 
 class RequestedModel:
     """Compiled model with a record of the requested entries of its arrays.
@@ -136,13 +142,15 @@ class _Entries:
         return len(self._array)
 
 
-def model_fields(spec: mujoco.MjSpec, model: RequestedModel) -> Iterator[Fields[Any]]:
+def model_fields(spec: mujoco.MjSpec, model: RequestedModel, contacts: bool = False) -> Iterator[Fields[Any]]:
     """Yield the fields of the elements of a compiled specification, with a record of the requested ones.
 
-    `model`: the compiled model, after reading.
+    `model`: the compiled model, after reading. `contacts`: True if its excluded pairs of bodies are used.
     """
     defaults = _defaults()
     for kind, several in LISTS.items():
+        if kind == "exclude" and contacts:
+            continue
         for element in getattr(spec, several, ()):
             if kind not in defaults:
                 yield Fields(kind, element.name or "one without a name", {"": 1})

@@ -18,7 +18,8 @@ from ...reading.files.requested import unused_notes
 from ...reading.files.text_file import file_text
 from ..robot import Connection, JointKind, Link, LinkJoint, Relation, Robot, RobotFault
 from .actuators import Disabled, bounds, disabled_actuators, transmissions
-from .fields import REASONS, RequestedModel, model_fields, name_of
+from .contacts import contacts as touching
+from .fields import REASONS, WITH_CONTACTS, RequestedModel, model_fields, name_of
 
 if TYPE_CHECKING:
     import mujoco
@@ -93,13 +94,14 @@ KINDS: tuple[JointKind, ...] = ("free", "ball", "slide", "hinge")
 """Joint kinds in the order of MuJoCo's numbers."""
 
 
-def read_mjcf(path: str | Path) -> Robot:
+def read_mjcf(path: str | Path, contacts: bool = False, ground: float | None = None) -> Robot:
     """Read a robot from an MJCF file, compiled by MuJoCo with its defaults, included files and inertias of shapes.
 
-    Raises RobotFault if MuJoCo refuses the file, or it contains features without an equivalent in a scene. Raises
-    InputError if the file cannot be read.
+    `contacts`: True to read the contacts of geoms. `ground`: height of an added plane, m, with MuJoCo's defaults. Raises
+    RobotFault if MuJoCo refuses the file, or it contains features without an equivalent in a scene. Raises InputError if
+    the file cannot be read.
     """
-    spec, compiled = _compiled(path)
+    spec, compiled = _compiled(path, ground)
     m = RequestedModel(compiled)
     disabled = Disabled(m)
     read: dict[str, Any] = {
@@ -109,16 +111,21 @@ def read_mjcf(path: str | Path) -> Robot:
         "relations": () if disabled("EQUALITY", "CONSTRAINT") else tuple(relations(m)),
         "connections": () if disabled("EQUALITY", "CONSTRAINT") else tuple(connections(m)),
     }
-    own = (*_notes(m, disabled), *disabled_actuators(m, disabled))
-    elements = [*model_fields(spec, m), *disabled.fields()]
+    own = [*_notes(m, disabled), *disabled_actuators(m, disabled)]
+    if contacts:
+        read["contacts"], of_contacts = touching(m, disabled)
+        own += of_contacts
+    else:
+        own += _without_contacts(m, disabled)
+    elements = [*model_fields(spec, m, contacts), *disabled.fields()]
     return Robot(
         name=compiled.names[: compiled.names.index(b"\0")].decode() or "robot",
         **read,
-        notes=(*own, *unused_notes(elements, REASONS)),
+        notes=(*own, *unused_notes(elements, WITH_CONTACTS if contacts else REASONS)),
     )
 
 
-def _compiled(path: str | Path) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
+def _compiled(path: str | Path, ground: float | None) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
     try:
         import mujoco
     except ImportError:
@@ -128,6 +135,8 @@ def _compiled(path: str | Path) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
     check_assets(Path(path))
     try:
         spec = mujoco.MjSpec.from_file(str(path))
+        if ground is not None:
+            spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=[0, 0, ground])
         return spec, spec.compile()
     except ValueError as error:
         raise RobotFault(f"MuJoCo refuses the file: {' '.join(str(error).split())}") from None
@@ -199,11 +208,14 @@ def _loose(m: RequestedModel, joint: int, kind: JointKind, disabled: Disabled) -
     return LinkJoint(name, kind, tuple(map(float, m.jnt_pos[joint])), stiffness=spring, damping=damping)
 
 
-def _notes(m: RequestedModel, disabled: Disabled) -> Iterator[str]:
+def _without_contacts(m: RequestedModel, disabled: Disabled) -> Iterator[str]:
     if not disabled("CONTACT", "CONSTRAINT") and (
         np.any(m.geom_contype[: m.ngeom] | m.geom_conaffinity[: m.ngeom]) or m.npair
     ):
-        yield "contacts between the shapes of MJCF are left out"
+        yield "contacts between the shapes of MJCF are left out (convert --contacts adds them)"
+
+
+def _notes(m: RequestedModel, disabled: Disabled) -> Iterator[str]:
     if m.opt.density or m.opt.viscosity:
         yield "the forces of the fluid around the bodies are left out"
     if m.nflex:

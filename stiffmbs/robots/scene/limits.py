@@ -1,9 +1,9 @@
-"""Stops that hold joints within their limits: one-sided springs and dampers."""
+"""Stops that hold joints within their limits, and brakes that hold their speeds: one-sided springs and dampers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import isfinite
+from math import inf, isfinite
 
 import numpy as np
 
@@ -25,10 +25,11 @@ def stops(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float]) 
 
     A stop at a distance x beyond a limit acts with max(0, k x + c x'), k = I/T^2 and c = 2 zeta I/T, for the inertia I of the links
     that the joint carries, about its axis at the start. Alone, with zeta = 1, it turns a speed v round within 2 T, at a distance of at
-    most v T/e, to v/e^2. Raises RobotFault if a lower limit is above the upper one.
+    most v T/e, to v/e^2. Beyond the largest speed of a joint, a brake acts with c = I/T on the excess, which decays with the time
+    constant T. Raises RobotFault if a lower limit is above the upper one.
     """
     placed = frames(robot, coordinates, {})
-    held = {hold.joint.name: hold for hold in mechanism.holds.values() if hold.joint.limits is not None}
+    held = {hold.joint.name: hold for hold in mechanism.holds.values() if hold.joint.is_limited}
     if not held:
         return {}, {}
     names = {name: mechanism.names.take(name) for name in STOPS}
@@ -36,14 +37,14 @@ def stops(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float]) 
     for joint, inertia in _inertias(robot, placed):
         if joint.name in held and inertia > 0.0:
             hold = held[joint.name]
-            forces[mechanism.names.take(f"{hold.name}_stop")] = along_axis(hold, _law(hold, inertia, names))
+            if laws := [*_stop(hold, inertia, names), *_brake(hold, inertia, names)]:
+                forces[mechanism.names.take(f"{hold.name}_stop")] = along_axis(hold, " + ".join(laws))
     return {names[name]: value for name, value in STOPS.items()}, forces
 
 
-def _law(hold: Hold, inertia: float, names: Mapping[str, str]) -> str:
-    """Return the formula of the torque or force of both stops of a joint."""
-    assert hold.joint.limits is not None
-    lower, upper = hold.joint.limits
+def _stop(hold: Hold, inertia: float, names: Mapping[str, str]) -> Iterator[str]:
+    """Yield the formulas of the torque or force of the stops of a joint, one for each limit."""
+    lower, upper = hold.joint.limits or (-inf, inf)
     if lower > upper:
         raise RobotFault(
             f"joint {hold.joint.name}: found the limits {lower:g} and {upper:g}, expected the lower one first"
@@ -51,9 +52,18 @@ def _law(hold: Hold, inertia: float, names: Mapping[str, str]) -> str:
     k = f"{inertia!r}/{names[TIME]}^2"
     c = f"{2.0 * inertia!r}*{names[DAMPING]}/{names[TIME]}"
     below, above = f"{plain(lower)!r} - {hold.coordinate}", f"{hold.coordinate} - {plain(upper)!r}"
-    terms = [f"branch({below}, 0, 0, max(0, {k}*({below}) - {c}*{hold.rate}))"] if isfinite(lower) else []
-    terms += [f"branch({above}, 0, 0, -max(0, {k}*({above}) + {c}*{hold.rate}))"] if isfinite(upper) else []
-    return " + ".join(terms)
+    if isfinite(lower):
+        yield f"branch({below}, 0, 0, max(0, {k}*({below}) - {c}*{hold.rate}))"
+    if isfinite(upper):
+        yield f"branch({above}, 0, 0, -max(0, {k}*({above}) + {c}*{hold.rate}))"
+
+
+def _brake(hold: Hold, inertia: float, names: Mapping[str, str]) -> Iterator[str]:
+    """Yield the formula of the torque or force of the brake of a joint for each direction."""
+    if (speed := hold.joint.speed) is not None:
+        c = f"{inertia!r}/{names[TIME]}"
+        for excess, sign in ((f"{hold.rate} - {plain(speed)!r}", "-"), (f"-{plain(speed)!r} - {hold.rate}", "")):
+            yield f"branch({excess}, 0, 0, {sign}{c}*({excess}))"
 
 
 def _inertias(robot: Robot, placed: Mapping[str, tuple[Placed, ...]]) -> Iterator[tuple[LinkJoint, float]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import inf
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ...reading.marker import GROUND
 from ..following import with_followers
 from ..robot import LinkJoint, Robot, RobotFault
 from .actuators import actuators
+from .contacts import contacts
 from .joints import Masses, bodies, joints, passive
 from .joints import notes as body_notes
 from .limits import stops
@@ -33,18 +35,19 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
     masses = Masses(robot.links, [frame for _, frame in mechanism.bodies.values()])
     acting = actuators(robot, mechanism)
     of_stops, stopping = stops(robot, mechanism, coordinates) if limits else ({}, {})
+    touching = contacts(robot, mechanism, coordinates)
     found: Content = {
         "name": robot.name,
         "dimensions": 3,
         "gravity": vector(robot.gravity),
-        "parameters": of_stops,
+        "parameters": of_stops | touching.parameters,
         "markers": mechanism.markers.get(GROUND, {}),
         "bodies": {},
         "joints": joints(robot, mechanism),
         "inputs": acting.inputs,
         "states": acting.states,
         "variables": acting.variables,
-        "forces": passive(robot, mechanism) | acting.forces | stopping | _lifted(robot, mechanism),
+        "forces": passive(robot, mechanism) | acting.forces | stopping | touching.forces | _lifted(robot, mechanism),
         "run": dict(RUN),
     }
     found["bodies"] = bodies(mechanism, masses)  # includes markers added by the other sections
@@ -54,6 +57,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
         *robot.notes,
         *body_notes(mechanism),
         *_limits(mechanism, coordinates, limits),
+        *touching.notes,
         *_notes(mechanism),
     ]
     return {key: value for key, value in found.items() if value or key == "bodies"}
@@ -84,10 +88,13 @@ def _limits(mechanism: Mechanism, coordinates: Mapping[str, float], held: bool) 
     """Yield notes on the limits of joints: whether a run holds them, and joints that start beyond theirs."""
     words, beyond = [], []
     for hold in mechanism.holds.values():
-        if (limits := hold.joint.limits) is None:
+        if not hold.joint.is_limited:
             continue
         unit = "rad" if hold.joint.is_rotary else "m"
-        words.append(f"{hold.name} {plain(limits[0]):g} .. {plain(limits[1]):g} {unit}")
+        limits, speed = hold.joint.limits or (-inf, inf), hold.joint.speed
+        parts = [] if hold.joint.limits is None else [f"{plain(limits[0]):g} .. {plain(limits[1]):g} {unit}"]
+        parts += [] if speed is None else [f"{plain(speed):g} {unit}/s"]
+        words.append(f"{hold.name} {' and '.join(parts)}")
         start = coordinates.get(hold.joint.name, hold.joint.zero)
         if not limits[0] <= start <= limits[1]:
             beyond.append(f"{hold.name} at {plain(start):g} {unit}")

@@ -26,3 +26,9 @@ REASONS: Mapping[str, Mapping[str, str]] = {
         "<magnetic_field>": SENSORS, "<spherical_coordinates>": SENSORS,
     },
 }  # fmt: skip
+"""Reasons why elements have no effect."""
+WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
+    **{key: value for key, value in REASONS.items() if key != "link/collision"},
+    "link/collision/geometry/mesh": {"*": "meshes have no contact"},
+}
+"""Reasons if the shapes of contacts are read."""

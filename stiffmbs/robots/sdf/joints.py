@@ -146,6 +146,7 @@ def _joint(
         rest=rest,
         friction=friction,
         limits=limits(arc, axis),
+        speed=_bound(arc, axis, "velocity") or None,
         pitch=_pitch(arc) if arc.kind == SCREW else 0.0,
     )
 
@@ -163,8 +164,13 @@ def limits(arc: Arc, axis: Axis) -> tuple[float, float] | None:
 
 def effort(arc: Arc, axis: Axis) -> float:
     """Return the largest force or torque on a coordinate, N or N m; 0 if the file states none."""
+    return _bound(arc, axis, "effort")
+
+
+def _bound(arc: Arc, axis: Axis, tag: str) -> float:
+    """Return a positive and finite limit; 0 if the file states none."""
     node = axis.node.find("limit")
-    found = math.inf if node is None else _limit(arc.where, node, "effort", math.inf)
+    found = math.inf if node is None else _limit(arc.where, node, tag, math.inf)
     return found if 0 < found < math.inf else 0.0
 
 

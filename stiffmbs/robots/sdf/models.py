@@ -6,10 +6,11 @@ from ...reading.files.quoted import quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault
 from .files import Files, Source, named, uri_of
-from .poses import flag, text_of
+from .poses import Pose, flag, pose_of, text_of
 from .scopes import BETWEEN, Scope, framed
 
-SCENERY = ("sun", "ground_plane")
+GROUND = "ground_plane"
+SCENERY = ("sun", GROUND)
 """Models of Gazebo that have nothing that moves; worlds without them are the same."""
 MERGE = "merge"
 WITHOUT_LINKS = ("light", "actor")
@@ -17,11 +18,15 @@ WITHOUT_LINKS = ("light", "actor")
 
 
 class Models:
-    """Reader of the models of a file. `omitted`: uris of scenery that is left out."""
+    """Reader of the models of a file. `omitted`: uris of scenery that is left out. `grounds`: poses of ground planes without a file.
 
-    def __init__(self, files: Files) -> None:
-        self._files = files
+    `contacts`: True if links touch ground planes.
+    """
+
+    def __init__(self, files: Files, contacts: bool) -> None:
+        self._files, self._contacts = files, contacts
         self.omitted: list[str] = []
+        self.grounds: list[Pose] = []
 
     def fill(self, scope: Scope, source: Source) -> None:
         """Add the links, joints, frames and models of an element to its scope."""
@@ -56,6 +61,10 @@ class Models:
         where = f"{scope.where}: the include {quoted(uri)}"
         found = self._files.included(where, uri, source)
         if found is None:
+            if self._contacts and uri.rpartition("/")[2] == GROUND:
+                include.without_effect("name", "static")
+                self.grounds.append(scope.in_root(pose_of(where, include.find("pose"))))
+                return
             if uri.rpartition("/")[2] in SCENERY:
                 self.omitted.append(uri)
                 include.without_effect("pose", "name", "static")

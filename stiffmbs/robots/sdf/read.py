@@ -13,7 +13,8 @@ from ...elements.spatial.marker import ORIGIN
 from ...reading.files.quoted import listed, quoted
 from ...reading.files.requested import unused_notes
 from ..robot import Closure, Connection, Link, LinkJoint, Robot, RobotFault, Transmission
-from .fields import REASONS
+from .contacts import contacts as touching
+from .fields import REASONS, WITH_CONTACTS
 from .files import Files, Source, Version
 from .gears import relations
 from .joints import GEARBOX, KINDS, Arc, arcs, effort, link_joints
@@ -39,8 +40,10 @@ class Placed:
     static: bool
 
 
-def read_sdf(path: Path) -> Robot:
+def read_sdf(path: Path, contacts: bool = False, ground: float | None = None) -> Robot:
     """Read the models of an SDFormat file as one robot.
+
+    `contacts`: True to read the contacts of collisions. `ground`: height of an added ground plane, m.
 
     Links that no joint connects with the world move freely; those of static models are fixed to ground. A joint between
     two links that other joints connect already closes a loop. Raises RobotFault if the file is not SDFormat, or has
@@ -48,7 +51,7 @@ def read_sdf(path: Path) -> Robot:
     """
     files = Files(path.parent)
     source = files.source(path)
-    root, models = _root(source), Models(files)
+    root, models = _root(source), Models(files, contacts)
     models.fill(root, source)
     links = {link.name: link for link in _links(root)}
     if not links:
@@ -71,8 +74,13 @@ def read_sdf(path: Path) -> Robot:
         "connections": tuple(_weld(arc, links) for arc in others if not KINDS[arc.kind]),
         "closures": tuple(_closure(arc, links) for arc in others if KINDS[arc.kind]),
     }
+    of_contacts: list[str] = []
+    if contacts:
+        grounds = [*models.grounds, *([] if ground is None else [Pose((0.0, 0.0, ground))])]
+        read["contacts"], of_contacts = touching(root, [(arc.parent, arc.child) for arc in joints], grounds)
     unused = (fields for each in files.read for fields in each.root.fields())
-    notes = (*_notes(links, branches, others, models), *unused_notes(unused, REASONS))
+    reasons = WITH_CONTACTS if contacts else REASONS
+    notes = (*_notes(links, branches, others, models), *of_contacts, *unused_notes(unused, reasons))
     return Robot(**read, notes=notes)
 
 

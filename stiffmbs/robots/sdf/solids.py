@@ -51,12 +51,12 @@ def _parts(where: str, name: str, link: Node, density: float, scope: Scope) -> I
         own = f"{where}: the collision {collision.get('name') or 'without a name'}"
         volume, moments = _solid(own, collision.find("geometry"))
         mass = number(own, collision, "density", density) * volume
-        pose = _placed(own, name, collision.find("pose"), scope)
+        pose = placed(own, name, collision.find("pose"), scope)
         A = matrix(pose.orientation)
         yield Part(mass, np.array(pose.position), mass * (A * np.array(moments)) @ A.T)
 
 
-def _placed(where: str, link: str, pose: Node | None, scope: Scope) -> Pose:
+def placed(where: str, link: str, pose: Node | None, scope: Scope) -> Pose:
     """Return the pose of a shape in the frame of its link."""
     base = None if pose is None else pose.get("relative_to")
     found = pose_of(where, pose)

@@ -64,7 +64,7 @@ class ErrorNorm:
         """Forget failures of an earlier run."""
         for cell in self._cells.dtype.names:
             self._cells[cell] = 0
-        self._cells["repeats"], self._cells["attempted"] = 1.0, np.nan
+        self._cells["repeats"], self._cells["attempted"], self._cells["begun"] = 1.0, np.nan, np.nan
 
 
 CONVERGED = Routine(

@@ -55,7 +55,7 @@ def samples_of_a_call():
         "samples": lambda system, grid: [sampling.Sample(float(k), np.zeros(0, int)) for k in range(1, 20_000)],
         "next_values": lambda *_: at_rest, "_acting": lambda system: np.array([True]), "_joined": nothing,
         "_up_to": lambda grid, t, ends, finer: ends, "_up_to_row": lambda found, row: found,
-        "_restarted": lambda *_: (Record(q=at_rest), 0.0),
+        "_restarted": lambda *_: (Record(q=at_rest), 0.0), "_before_breakpoints": lambda found, *_: list(found),
     }  # fmt: skip
     dynamics = Record(system=Record(sampled=np.array([True]), first_state=0), input_features=nothing)
     with interpreted(sampling, **replaced):

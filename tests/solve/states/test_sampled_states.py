@@ -4,6 +4,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import stiffmbs
@@ -215,3 +216,43 @@ def test_intervals_are_integrated_at_once_while_no_value_changes_that_acts():
         assert found["integral"] == pytest.approx(np.ceil(found.time / 0.001 - 1e-6))
     free = np.array([[0, 1], [-K / M, -C / M]])
     assert rest["block.x"][-1] == pytest.approx((expm(free) @ [0.2, 0.3])[0], abs=1e-8)
+
+
+ON_A_KINK = """
+gravity: [0, 0]
+bodies:
+  table: {mass: 3, inertia: 1}
+  block: {mass: 2, inertia: 1, position: [0.1, 0.5]}
+joints:
+  rail: {type: prismatic, i: table, j: ground}
+  guide: {type: prismatic, i: block, j: {body: ground, point: [0, 0.5]}}
+  drive: {type: drive, joint: rail, position: "0.05*sin(7*t) + 0.02*max(t - 0.5, 0)"}
+states: {push: {update: -30*block.x - block.vx, period: 0.1}}
+forces: {spring: {type: force, i: block, force: [-50*(block.x - table.x) + push, 0]}}
+run: {duration: 1}
+"""
+
+
+def block_on_a_driven_table():
+    """Return the position of the block at 1 s, by SciPy from sample to sample."""
+    state = np.array([0.1, 0.0])
+    for k in range(10):
+        push = -30 * state[0] - state[1]
+
+        def rate(t, y, push=push):
+            table = 0.05 * np.sin(7 * t) + 0.02 * max(t - 0.5, 0)
+            return [y[1], (-50 * (y[0] - table) + push) / 2]
+
+        state = solve_ivp(rate, (0.1 * k, 0.1 * k + 0.1), state, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+    return state[0]
+
+
+@pytest.mark.parametrize("points", [11, 14], ids=["output at the sample", "no output there"])
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+def test_a_sample_at_a_kink_of_a_drive(solver, points, tmp_path):
+    """The restart after the sample began just before the kink, within rounding, and bdf and radau stopped there."""
+    (path := tmp_path / "scene.yaml").write_text(ON_A_KINK, encoding="utf-8")
+    found = stiffmbs.run(stiffmbs.load_scene(path), solver=solver, rtol=1e-6, points=points)
+    assert found.success, found.message
+    assert found["block.x"][-1] == pytest.approx(block_on_a_driven_table(), abs=1e-5)
+    assert any("t = 0.5 s" in note and "velocities jump (table.vx by 0.02" in note for note in found.notes)

@@ -61,6 +61,7 @@ FORCES: tuple[Maker, ...] = (
     Maker("forces", "brake", forces.add_brake, EVENTS, SPACE),
     Maker("forces", "contact", contacts.add_contact, EVENTS, PLANE),
     Maker("forces", "sphere_contact", contacts.add_sphere_contact, EVENTS, SPACE),
+    Maker("forces", "capsule_impact", contacts.add_capsule_impact, EVENTS, SPACE),
     Maker("forces", "solid_impact", contacts.add_solid_impact, EVENTS, SPACE),
     *(
         Maker("forces", f"{kind}_plane_impact", partial(contacts.add_plane_impact, kind=kind), EVENTS, SPACE)

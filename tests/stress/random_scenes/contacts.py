@@ -93,6 +93,17 @@ def add_sphere_impact(draft: Draft, kind: str) -> str:
     )
 
 
+def add_capsule_impact(draft: Draft) -> str:
+    """Add an impact of two capsules."""
+    i, j = draft.two_bodies()
+    radii, lengths = ([draft.uniform(low, high) for _ in range(2)] for low, high in ((0.03, RADIUS), (0.1, 0.4)))
+    way, at = _direction(draft), draft.near(i, 0.1)
+    reach = sum(radii) + sum(lengths) / 2
+    markers = {"i": draft.marker(i, at, draft.axes()), "j": draft.marker(j, at - (reach + 0.01) * way, draft.axes())}
+    sizes = {"radius": radii[0], "length": lengths[0], "other_radius": radii[1], "other_length": lengths[1]}
+    return draft.add("forces", "impact", type="capsule_impact", **markers, **sizes, **_impact(draft))
+
+
 def add_solid_impact(draft: Draft) -> str:
     """Add an impact of two ellipsoids, boxes or cylinders."""
     i, j = draft.two_bodies()

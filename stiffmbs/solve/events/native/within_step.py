@@ -31,7 +31,7 @@ from stiffmbs.solve.events.native.bounds import (
     turned_argument,
     turned_arguments,
 )
-from stiffmbs.solve.events.native.parameters import BISECTIONS, SEARCH
+from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.values import switches
 
 INFINITE = float("inf")
@@ -182,7 +182,7 @@ def _first_within(w, s, begun, h, low, end_of_part):
                     seen = place
         if seen > 1.0 and _visits(w, k, end, low, end_of_part):
             seen = 1.0
-        if seen <= 1.0:
+        if seen <= 1.0 and not _leaves_later(w, s, begun, h, k, first):
             place = _change(w, s, begun, h, k)
             if k >= w.n_event_functions or not departed(w, k, w.value_after[k]):  # the new law holds a little later
                 place = min(1.0, place + SEARCH.least_difference)
@@ -199,6 +199,12 @@ def _has_departed(w, s, begun, h, k, place):
     """Return True if a function has left its initial interval at a place, with the reactions there."""
     _load_at(w, s, place)
     return departed(w, k, switches(w, s, begun + place * h)[k])
+
+
+@compiled
+def _leaves_later(w, s, begun, h, k, place):
+    """Return True if a function leaves its initial interval at a place or later; one place may have many functions."""
+    return place <= w.left_high[k] and not _has_departed(w, s, begun, h, k, place - INDISTINCT)
 
 
 @compiled

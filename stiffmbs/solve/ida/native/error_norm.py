@@ -31,6 +31,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.compile.machine.native.calls import call_address, call_float, call_int
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OK, OPERATIONS
 from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, EQUAL_STEPS, FILTER
+from stiffmbs.solve.ida.native.ida_memory import native_ida_view
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import ERROR_NORM
 
@@ -38,7 +39,7 @@ FAILS: Final = 1e10
 """Norm that fails the error test of any order; the same factor enlarges the norms of lower orders, which are compared."""
 
 MOST_REPEATED: Final = 2
-"""Number of such failures in a step; after a third one, IDA continues at order 1."""
+"""Number of such failures in a step; after a third one, IDA continues at order 1, and after ten it gives up."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
@@ -106,14 +107,18 @@ def _see_event(c, estimate, weights):
     if c.t == c.attempted:
         return
     c.attempted = c.t
+    begun = native_ida_view(ints(c.ida)).internal
+    if begun != c.begun:
+        c.begun = begun
+        c.repeated = 0
     again = c.enlarged != 1.0
-    c.repeated = c.repeated + 1 if again else 0
     part = call_float(c.part_before_event, (estimate, weights, c.ida)) if c.repeated < MOST_REPEATED else 1.0
     if part < 1.0 or again:
         _repeat_up_to(c, part)
     c.enlarged = 1.0
     if part < 1.0:
         c.enlarged = FAILS / call_float(c.norm, (estimate, weights))
+        c.repeated += 1
         c.known_failures += 1
 
 

@@ -99,12 +99,12 @@ ERROR_NORM = Layout({
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL,
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
-    "ida": INT, "part_before_event": INT, "time_of": INT, "set_largest_part": INT, "set_least_part": INT, "t": FLOAT_CELL, "attempted": FLOAT_CELL, "enlarged": FLOAT_CELL, "repeated": INT_CELL,
+    "ida": INT, "part_before_event": INT, "time_of": INT, "set_largest_part": INT, "set_least_part": INT, "t": FLOAT_CELL, "attempted": FLOAT_CELL, "begun": FLOAT_CELL, "enlarged": FLOAT_CELL, "repeated": INT_CELL,
 })  # fmt: skip
 """Norm of IDA's error estimates (`stiffmbs.solve.ida.native.error_norm`).
 
 Cells: failures of the error test with a weight that decreases with each step; 1 to filter all estimates; cj at the last
 check of failures; steps and failures of the error test, and the same at the last check; step up to which estimates are
 filtered; order of the last step; number of periods of a law whose features are resolved, else 1; step up to which steps
-may not grow (0 for none), and least growth factor afterwards; current time, time at the end of the last attempted step,
-factor of the norms of that step, number of its repetitions."""
+may not grow (0 for none), and least growth factor afterwards; current time. Cells of the last attempted step: time at
+its end and at its start, factor of its norms, number of its repetitions up to an event."""

@@ -95,7 +95,10 @@ def _are_closed(b):
 
 @compiled
 def _is_balanced(b):
-    """Return True if forces balance and joints are closed. Where they are not, a correction costs less than a projection."""
+    """Return True if forces balance and joints are closed.
+
+    Where they are not, a correction by known factors costs less than the projection of `_left`, one by new factors more.
+    """
     return _are_closed(b) and _unbalanced(b, b.defect) <= 1.0
 
 
@@ -231,7 +234,7 @@ def corrected(output_correction, state, equations, t):
             return True
         _placed(b, t)
         _look(b, s, e, t)
-    if _converged(b, s, e, t):
+    if _left(b, s, e, t) <= 1.0 or _converged(b, s, e, t):
         return True
     count_failure(b, t)
     corrects = _without_spurious_forces(b, s, e, t)

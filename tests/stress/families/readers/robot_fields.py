@@ -38,7 +38,7 @@ PREFIXED = (
     ("</robot>", "<drake:x/></robot>", "<drake:x>"), ('<link name="base"/>', '<link name="base"><my:x/></link>', "<my:x>"),
     ('<robot name="r">', '<robot name="r" sensor:version="2">', "sensor:version"), ("</robot>", "<gazebo><mu1>3</mu1></gazebo></robot>", "robot <gazebo>"),
     ("WRIST", '<mimic joint="hinge" multiplier="2"/>', ""), ("</robot>", '<transmission name="t"><type>x</type></transmission></robot>', "transmission <type> of t"),
-    ('effort="5"', 'velocity="2" effort="5"', "joint/limit velocity of hinge"), ("HAND", "<visual><geometry/></visual>", "link <visual> of hand"),
+    ('effort="5"', 'velocity="2" effort="5"', "hinge -1 .. 1 rad and 2 rad/s"), ("HAND", "<visual><geometry/></visual>", "link <visual> of hand"),
 )  # fmt: skip
 """A change, and what the notes name."""
 MJCF = """<mujoco><option gravity="0 0 0" OPTION><flag contact="disable" FLAG/></option>
