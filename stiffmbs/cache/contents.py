@@ -10,8 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
-Kind = Literal["record", "kernel", "routine", "draft", "file", "scene", "start", "body"]
-"""Derived kinds of elements, their machine code, that of solvers, and drafts of both. Contents of YAML files, scenes, starts of runs, and reduced
+Kind = Literal["record", "kernel", "routine", "draft", "object", "file", "scene", "start", "body"]
+"""Derived kinds of elements, their machine code, that of solvers, drafts of both, and both for shared libraries. Contents of YAML files, scenes, starts of runs, and reduced
 flexible bodies."""
 KINDS: tuple[Kind, ...] = get_args(Kind)
 OTHER = "other"

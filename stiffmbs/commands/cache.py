@@ -13,6 +13,7 @@ WORDS = {
     "kernel": "kernels",
     "routine": "routines",
     "draft": "drafts of kernels and routines",
+    "object": "kernels and routines for FMUs",
     "file": "contents of YAML files",
     "scene": "scenes read before",
     "start": "starts of runs",

@@ -184,24 +184,37 @@ def _lines(text: str) -> list[str]:
     return [line for line in content.splitlines() if line.strip() and not line.lstrip().startswith("#")]
 
 
-@click.command(short_help="An FMU for co-simulation.")
+@click.command(short_help="An FMU for co-simulation, or without Python for model exchange too.")
 @click.argument("scene")
 @output_option("The FMU, .fmu; by default SCENE.fmu in the working folder.")
 @option("--channel TEXT ...", "An output of the FMU; by default the requests of the scene, or all channels", "outputs")
+@option("--native", "Write an FMU without Python: machine code for co-simulation and model exchange.")
+@option("--fmi VERSION", "Version of FMI: 2.0, or 3.0 with --native.", "version", default="2.0")
 @option("--json", "Print one JSON object on one line.", "as_json")
-def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool) -> None:
-    """Write SCENE as an FMU (FMI 2.0, co-simulation) with its inputs, parameters and channels.
+@CHANGES
+def fmu(
+    scene: str, output: Path | None, outputs: tuple[str, ...], native: bool, version: str, as_json: bool,
+    changes: list[tuple[str, str]],
+) -> None:  # fmt: skip
+    """Write SCENE as an FMU (co-simulation) with its inputs, parameters and channels.
 
-    The FMU needs this package in the Python of the program that runs it (needs the extra fmu).
+    The FMU needs this package in the Python of the program that runs it (needs the extra fmu). With --native it needs no
+    Python: its parameters are fixed when it is written, and it is for model exchange too (needs a C compiler or the
+    extra fmu).
 
     Exit status: 0 done, 1 the FMU could not be written, 2 the input is wrong.
     """
     from ..show.summary import json_line
-    from ..studies.fmu.build import build_fmu
+    from ..studies.fmu.build import written_fmu
 
     target = output or file_beside(scene, ".fmu")
     with refusing(scene, as_json):
         refuse_own_input("-o", scene, target)
-        names = build_fmu(scene, target, outputs)
-    printed = f"fmu: {target}, {len(names)} outputs"
-    click.echo(json_line({"scene": scene, "output": str(target), "outputs": list(names)}) if as_json else printed)
+        written = written_fmu(scene, target, outputs, changes, native, version)
+    if as_json:
+        printed = {"scene": scene, "output": str(target), "outputs": list(written.outputs)}
+        click.echo(json_line(printed | ({"notes": list(map(str, written.notes))} if written.notes else {})))
+        return
+    click.echo(f"fmu: {target}, {len(written.outputs)} outputs")
+    for line in note_lines(written.notes):
+        click.echo(line, err=True)

@@ -7,13 +7,15 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from .machine.layout import address, packed
+from .machine.layout import FLOATS, INTS, Layout, Table, address, packed
 from .machine.native.tables import CALL, STATE
 from .machine.routines import TERMS
 from .system import System
 from .terms import TERM_AXES, TERM_SETS
 
 SETS = list(TERM_SETS)
+LISTS_BY_SET, VALUES_BY_SET = (Layout(dict.fromkeys(SETS, kind)) for kind in (INTS, FLOATS))
+"""Addresses by term set: of lists and tables, and of values."""
 LEFT_OPEN = 1e-5
 """Tolerance of redundant equations, which are left out: input data have a limited number of digits. In rad and m;
 relative to the size of mechanisms smaller than 1 m."""
@@ -38,10 +40,14 @@ class State:
         self.q, self.u, self.a = self._q[: system.n_q], self._u[: system.n_u], self._a[: system.n_u]
         self.lam, self.mu = np.zeros(system.n_c), np.zeros(system.n_c)
         self.values: dict[str, np.ndarray] = {}
-        self._calls: dict[str, np.ndarray] = {}
+        self._calls: dict[str, Table] = {}
         self._turned: dict[str, np.ndarray] = {}
-        self._n_calls, self._calls_at, self._values_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(3))
-        self._n_turned, self._turned_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(2))
+        self._n_calls, self._n_turned = (np.zeros(len(SETS), dtype=np.int64) for _ in range(2))
+        self._calls_at, self._turned_at, self._values_at = (
+            Table(LISTS_BY_SET),
+            Table(LISTS_BY_SET),
+            Table(VALUES_BY_SET),
+        )
         self.relaxations = np.zeros(2 * system.n_c)
         self._followed = np.ascontiguousarray(system.followed)
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
@@ -49,7 +55,7 @@ class State:
         self.table = self._packed(self._n_calls, self._calls_at)
         self._evaluate, self._at = TERMS.short_call, address(self.table)
 
-    def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
+    def _packed(self, n_calls: np.ndarray, calls_at: Table) -> Table:
         system = self.system
         return packed(
             STATE,
@@ -67,39 +73,46 @@ class State:
         """Number of evaluated term sets, including those by compiled code: a machine-independent measure of work."""
         return int(self._evaluated[0])
 
-    def restricted(self, used: Mapping[str, np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
+    def restricted(self, used: Mapping[str, np.ndarray]) -> Table:
         """Return a table of the same state in which term sets omit groups whose values are unused.
 
-        `used`: masks of the groups to keep for each of these term sets, which must be loaded. The second result are the
-        arrays that must live as long as the table.
+        `used`: masks of the groups to keep for each of these term sets, which must be loaded.
         """
-        n_calls, calls_at, kept = self._n_calls.copy(), self._calls_at.copy(), []
+        n_calls, calls_at = self._n_calls.copy(), self._calls_at.same()
         for term_set, groups in used.items():
             called = [self.system.kernel(term_set, group) is not None for group in self.system.groups]
-            kept.append(np.ascontiguousarray(self._calls[term_set][groups[called]]))
-            n_calls[SETS.index(term_set)], calls_at[SETS.index(term_set)] = len(kept[-1]), kept[-1].ctypes.data
-        return self._packed(n_calls, calls_at), [n_calls, calls_at, *kept]
+            chosen = np.flatnonzero(groups[called])
+            n_calls[SETS.index(term_set)] = len(chosen)
+            calls_at.link(term_set, self._calls[term_set].rows(chosen))
+        return self._packed(n_calls, calls_at)
 
     def load(self, term_set: str) -> None:
         """Load a term set for compiled code: its kernels, and memory for its values."""
         if term_set in self.values:
             return
         system, k = self.system, SETS.index(term_set)
-        calls = [
-            (kernel.address, group.count, group.index.ctypes.data, group.numbers.ctypes.data,
-             system.places[term_set][g].ctypes.data)
+        called = [
+            (kernel, g)
             for g, group in enumerate(system.groups)
-            if (kernel := system.kernel(term_set, group, f"{g + 1} of {len(system.groups)} kinds, {term_set}")) is not None
-        ]  # fmt: skip
-        self._turned[term_set] = system.turned(term_set)
-        self._n_turned[k] = len(self._turned[term_set])
-        self._turned_at[k] = self._turned[term_set].ctypes.data
-        self._calls[term_set] = np.array(calls, dtype=np.int64).reshape(-1, len(CALL))
+            if (kernel := system.kernel(term_set, group, f"{g + 1} of {len(system.groups)} kinds, {term_set}"))
+            is not None
+        ]
+        calls = Table(CALL, len(called))
+        for row, (kernel, g) in enumerate(called):
+            group = system.groups[g]
+            calls.put_row(
+                row,
+                {"kernel": kernel, "count": group.count, "index": group.index, "number": group.numbers, "place": system.places[term_set][g]},
+            )  # fmt: skip
+        turned = system.turned(term_set)
+        self._n_turned[k] = len(turned)
+        self._turned_at.link(term_set, turned)
+        self._calls[term_set] = calls
         empty = np.zeros(system.n_values(term_set))
         self.values[term_set] = np.concatenate([empty, system.mass, self.relaxations, [1.0]])
-        self._n_calls[k] = len(calls)
-        self._calls_at[k] = self._calls[term_set].ctypes.data
-        self._values_at[k] = self.values[term_set].ctypes.data
+        self._n_calls[k] = len(called)
+        self._calls_at.link(term_set, calls)
+        self._values_at.link(term_set, self.values[term_set])
 
     def relax(self, mu: np.ndarray, lam: np.ndarray) -> None:
         """Set the relaxation of each constraint row, for formulations that use it."""

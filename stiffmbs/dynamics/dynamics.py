@@ -138,7 +138,7 @@ class Dynamics:
             "trailing_source": self._trailing[0],
             "trailing_row": self._trailing[1],
             "turned_for_output": for_output[~np.isin(for_output, system.turned("acceleration"))].astype(np.int64),
-            "lines": np.empty(LINES * sum(self._widths)),
+            "lines": np.zeros(LINES * sum(self._widths)),
             **judging,
             "mass": np.ascontiguousarray(system.mass, dtype=float),
             "root_q": np.sqrt(system.mass_by_coordinate),
@@ -148,7 +148,7 @@ class Dynamics:
         self.table = packed(
             DYNAMICS,
             {
-                "state": self.state.table, "constraining": self._constraining[0],
+                "state": self.state.table, "constraining": self._constraining,
                 "positions": self._positions.equations_table, "position_factors": self._positions.factors_table,
                 "velocities": self._velocities.equations_table, "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table, "acceleration_factors": self._accelerations.factors_table,

@@ -29,14 +29,14 @@ class HeldInputs:
     """Values of inputs, and the numbers of forces that are affine functions of one of them.
 
     `values`: current values, read only. `least`, `largest`: bounds of the values that may be taken, initially the current
-    ones. `wanted`: next values, for the caller to fill. `table`: addresses (`stiffmbs.dynamics.native.layouts.HELD_INPUTS`).
+    ones. `wanted`: next values, for the caller to fill. `numbers`: of forces. `table`: addresses (`stiffmbs.dynamics.native.layouts.HELD_INPUTS`).
     """
 
     def __init__(self, values: Sequence[float], numbers: Sequence[AffineNumber]) -> None:
         self.values = np.array(values, dtype=float)
         self.least, self.largest = self.values.copy(), self.values.copy()
         self.wanted = self.values.copy()
-        self._kept = numbers
+        self.numbers = tuple(numbers)
         self._arrays = {
             "value": self.values, "least": self.least, "largest": self.largest,
             "number": np.array([address(each.numbers) + 8 * each.place for each in numbers], dtype=np.int64),
@@ -49,7 +49,7 @@ class HeldInputs:
 
     def write(self) -> None:
         """Write the numbers of the current values."""
-        for each in self._kept:
+        for each in self.numbers:
             each.numbers[each.place] = each.offset + each.slope * self.values[each.input]
 
     def hold(self) -> int:

@@ -54,9 +54,8 @@ class JointCoordinates:
         self._state = State(system)
         self._state.load("output")
         used = np.array([any(name in of_joint for name in group.names) for group in system.groups], dtype=bool)
-        table, self._kept = self._state.restricted({"output": used})
         self._arrays = {
-            "state": table,
+            "state": self._state.restricted({"output": used}),
             "place": np.array([at[name] for name in self.names], dtype=np.int64),
             "rate_place": np.array([at[f"{name}_rate"] for name in self.names], dtype=np.int64),
             "counter": np.array(counter, dtype=np.int64),

@@ -53,9 +53,8 @@ class VariationalEquations:
         share = np.setdiff1d(state.system.turned(formulation.residual_set), state.system.turned(formulation.matrix_set))
         table, slots = equations.table()
         self._history, self._times = np.zeros((DEPTH, len(directions), n)), np.zeros(DEPTH)
-        used, calls = state.restricted(equations.used())
         values = {
-            "state": used, "equations": table, "n": n, "n_directions": len(directions), "n_slots": len(row),
+            "state": state.restricted(equations.used()), "equations": table, "n": n, "n_directions": len(directions), "n_slots": len(row),
             "row": row, "column": column,
             "constant": np.zeros(len(row)), "rate": np.zeros(len(row)), "n_share": len(share), "share": share,
             "parts": np.array([part.table.ctypes.data for part in self._parts], dtype=np.int64),
@@ -66,7 +65,7 @@ class VariationalEquations:
             "history": self._history, "times": self._times, "weight": np.zeros(DEPTH), "slope": np.zeros(DEPTH),
         }  # fmt: skip
         self._table = packed(VARIATIONS, values)
-        self._kept = values, slots, calls, assembled, handles
+        self._kept = values, slots, assembled, handles
         self._cells, self._at = self._table.view(VARIATIONS.cells)[0], self._table.ctypes.data
 
     def close(self) -> None:

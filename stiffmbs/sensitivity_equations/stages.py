@@ -62,13 +62,12 @@ class Stages:
                     SparseLU.solve.address,
                 )
         table, slots = equations.table()
-        used, calls = state.restricted(equations.used())
         lists = {
             "row": row, "column": column, "own": own, "coupled": equations.slots_with_rates, "coupling": coupling,
             "re_re": pairs.re_re, "im_im": pairs.im_im, "im_re": pairs.im_re, "re_im": pairs.re_im,
         }  # fmt: skip
         values = {
-            "state": used, "equations": table, "n": n, "stages": stages, "n_slots": len(row),
+            "state": state.restricted(equations.used()), "equations": table, "n": n, "stages": stages, "n_slots": len(row),
             **{name: np.zeros(stages * len(row)) for name in ("constant", "rate")},
             **{name: np.zeros(len(row)) for name in ("mean_constant", "mean_rate")},
             "n_coupled": len(equations.slots_with_rates), "whole": whole.arrays["factors"], "whole_entries": whole.arrays["entries"],
@@ -82,7 +81,7 @@ class Stages:
             **{name: np.ascontiguousarray(each, dtype=np.int32) for name, each in lists.items()},
         }  # fmt: skip
         self._table = packed(STAGES, values)
-        self._kept, self._memories = (values, slots, calls), (whole, *apart)
+        self._kept, self._memories = (values, slots), (whole, *apart)
 
     def forget(self) -> None:
         """Forget the factors of earlier steps, and their pivots."""

@@ -44,7 +44,7 @@ def test_the_address_of_a_cell_points_to_it():
 
 def test_a_table_filled_anew_keeps_cells_that_are_not_given():
     table = packed(LAYOUT, {"n": 1, "t": 1.0, "steps": 5, "row": np.zeros(1)})
-    fill(table, LAYOUT, {"n": 3, "t": 2.0, "row": np.zeros(1)})
+    fill(table, {"n": 3, "t": 2.0, "row": np.zeros(1)})
     assert table[0] == 3 and table.view(LAYOUT.cells)[0].item() == (2.0, 5)
 
 

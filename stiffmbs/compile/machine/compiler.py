@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...cache import entries, library
 from ...cache.contents import Kind
@@ -17,7 +17,18 @@ from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
 from . import drafts
 from .linking import Compiled, Signatures, c_types, linked, sealed, symbol, unsealed
-from .object_code import DRAFT, FULL, GENERIC, INLINED, generic_machine, machine, object_code, origin
+from .object_code import (
+    DRAFT,
+    FULL,
+    GENERIC,
+    INLINED,
+    Target,
+    generic_machine,
+    llvm_version,
+    machine,
+    object_code,
+    origin,
+)
 
 LOGGER = logging.getLogger(__name__)
 _ONE_AT_A_TIME = RLock()
@@ -158,7 +169,20 @@ def _native(package: str) -> str:
     return digest_of([*files, here / "layout.py", here.parent / "bodies.py"])
 
 
+class Unit(NamedTuple):
+    """Functions compiled together: what their code follows from, and their source."""
+
+    follows_from: FollowsFrom
+    source: Source
+
+
 def _loaded(follows_from: FollowsFrom, source: Source) -> dict[str, Compiled]:
+    """Return functions that can be called, with the unit that they belong to."""
+    unit = Unit(follows_from, source)
+    return {name: each._replace(unit=unit) for name, each in _found(follows_from, source).items()}
+
+
+def _found(follows_from: FollowsFrom, source: Source) -> dict[str, Compiled]:
     """Return functions from the cache, as compiled before or as a draft, or from the library; else compile them."""
     entry = entries.name_of(*follows_from, machine())
     with _ONE_AT_A_TIME:
@@ -209,6 +233,19 @@ def in_library(follows_from: FollowsFrom, source: Source) -> tuple[str, bytes]:
     code = object_code(made.assembly.replace(drafts.OPEN, name), source.level, source.unrolled, GENERIC)
     kept = made.assembly if source.level == FULL else ""
     return name, made._replace(symbols=name, code=code, assembly=kept).packed()
+
+
+def in_shared_library(unit: Unit, target: Target) -> tuple[str, bytes]:
+    """Return position-independent code of a unit for a platform, from the cache or compiled, and the prefix of its functions' names."""
+    entry = entries.name_of("object", *unit.follows_from, *target, llvm_version())
+    prefix = symbol(entry, "").replace("-", "_")
+    code = entries.read(entry)
+    if code is None:
+        with uncollected():
+            text = drafted("", unit.source).assembly.replace(symbol(drafts.OPEN, ""), prefix)
+            code = object_code(text, unit.source.level, unit.source.unrolled, target=target)
+        entries.write(entry, code)
+    return prefix, code
 
 
 def drafted(entry: str, source: Source) -> drafts.Draft:

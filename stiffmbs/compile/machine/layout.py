@@ -11,7 +11,7 @@ import ctypes
 from collections.abc import Mapping
 from functools import cached_property
 from hashlib import blake2b
-from typing import Any, Final
+from typing import Any, Final, Protocol
 from weakref import WeakValueDictionary, finalize
 
 import numpy as np
@@ -36,6 +36,11 @@ class Layout(dict[str, str]):
         return np.dtype({"names": list(columns), "formats": formats, "offsets": offsets, "itemsize": 8 * len(self)})
 
     @cached_property
+    def columns(self) -> dict[str, int]:
+        """Numbers of the columns by name."""
+        return {name: column for column, name in enumerate(self)}
+
+    @cached_property
     def given(self) -> tuple[np.ndarray, tuple[str, ...], tuple[np.dtype[Any] | None, ...]]:
         """Columns set by Python (numbers and array addresses): positions, names, and array types."""
         found = {name: column for column, name in enumerate(self) if self[name] in (INT, *DTYPES)}
@@ -58,6 +63,60 @@ POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_FL
 """Kinds of arrays in compiled code, which allocates its own (`stiffmbs.compile.machine.native.memory`)."""
 
 
+class Addressed(Protocol):
+    """Compiled function, by its address."""
+
+    @property
+    def address(self) -> int:
+        """Address for calls from compiled code."""
+
+
+class Table(np.ndarray):
+    """Words of a table, with the objects whose addresses some of them are (`stiffmbs.compile.machine.image`).
+
+    - `layout`: layout of one row; tables of several rows repeat it.
+    - `links`: array, table or compiled function by the index of the word with its address.
+    """
+
+    layout: Layout
+    links: dict[int, np.ndarray | Addressed]
+
+    def __new__(cls, layout: Layout, rows: int = 1) -> Table:
+        """Return a table of zeros."""
+        table = np.zeros(rows * len(layout), dtype=np.int64).view(cls)
+        table.layout, table.links = layout, {}
+        return table
+
+    def link(self, name: str, target: np.ndarray | Addressed, row: int = 0) -> None:
+        """Store the address of an array, a table or a compiled function in a column."""
+        at = row * len(self.layout) + self.layout.columns[name]
+        self[at] = address(target) if isinstance(target, np.ndarray) else target.address
+        self.links[at] = target
+
+    def put_row(self, row: int, values: Mapping[str, Any]) -> None:
+        """Store numbers, and the addresses of arrays and functions, in a row."""
+        for name, value in values.items():
+            if isinstance(value, np.ndarray) or hasattr(value, "address"):
+                self.link(name, value, row)
+            else:
+                self[row * len(self.layout) + self.layout.columns[name]] = value
+
+    def rows(self, which: np.ndarray) -> Table:
+        """Return a table of some rows, by number."""
+        width, found = len(self.layout), Table(self.layout, len(which))
+        found.reshape(-1, width)[:] = self.reshape(-1, width)[which]
+        for k, row in enumerate(which.tolist()):
+            own = range(row * width, (row + 1) * width)
+            found.links |= {k * width + at - own.start: self.links[at] for at in own if at in self.links}
+        return found
+
+    def same(self) -> Table:
+        """Return another table of the same words and links."""
+        found = Table(self.layout, len(self) // len(self.layout))
+        found[:], found.links = self, dict(self.links)
+        return found
+
+
 def at_a_line(count: int) -> np.ndarray:
     """Return zeros aligned to a cache line: access to quads across two lines is far slower."""
     longer = np.zeros(count + CACHE_LINE // 8)
@@ -70,14 +129,14 @@ def whole_lines(parts: list[np.ndarray]) -> list[np.ndarray]:
     return [*parts, np.zeros(-sum(map(len, parts)) % (CACHE_LINE // 8))]
 
 
-def packed(layout: Layout, values: Mapping[str, object]) -> np.ndarray:
+def packed(layout: Layout, values: Mapping[str, object]) -> Table:
     """Return the table for a layout: addresses of arrays, numbers, and cells, zero if no value is given.
 
     The arrays must be contiguous, of the layout's type, and live as long as the table is used. Arrays owned by compiled
     code are empty at first (`packed_with_memory`).
     """
-    table = np.zeros(len(layout), dtype=np.int64)
-    fill(table, layout, values)
+    table = Table(layout)
+    fill(table, values)
     return table
 
 
@@ -85,7 +144,7 @@ RELEASE = ctypes.pythonapi.PyMem_RawFree
 """Frees the memory of `stiffmbs.compile.machine.native.memory`."""
 
 
-def packed_with_memory(layout: Layout, values: Mapping[str, object]) -> np.ndarray:
+def packed_with_memory(layout: Layout, values: Mapping[str, object]) -> Table:
     """Return a table as `packed`; compiled code's own arrays are freed with it.
 
     Users of the table's address must keep the returned array.
@@ -93,6 +152,7 @@ def packed_with_memory(layout: Layout, values: Mapping[str, object]) -> np.ndarr
     words = packed(layout, values)
     own = [column for column, kind in enumerate(layout.values()) if kind in OWN]
     table = words.view()
+    table.layout, table.links = words.layout, words.links
     finalize(table, _free, words, own).atexit = False
     return table
 
@@ -108,8 +168,9 @@ def arrays_of(layout: Layout, lists: Mapping[str, object]) -> dict[str, np.ndarr
     return {name: np.asarray(values, dtype=DTYPES[layout[name]]).reshape(-1) for name, values in lists.items()}
 
 
-def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:
-    """Fill a table; cells without a given value are unchanged."""
+def fill(table: Table, values: Mapping[str, Any]) -> None:
+    """Fill a table; cells without a given value are unchanged. A number may be a compiled function, by its address."""
+    layout = table.layout
     own = table.view(layout.cells)[0]
     for name in layout.cells.names or ():
         if name in values:
@@ -121,7 +182,11 @@ def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:
         if dtype is not None:
             assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
             assert value.dtype == dtype, name
+            table.links[layout.columns[name]] = value
             value = address(value)
+        elif hasattr(value, "address"):
+            table.links[layout.columns[name]] = value
+            value = value.address
         numbers.append(int(value))
     table[columns] = numbers
 

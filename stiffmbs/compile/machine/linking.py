@@ -28,12 +28,15 @@ class Compiled(NamedTuple):
     """Compiled function: its address for other compiled code, and two ways to call it from Python.
 
     Pointers are passed as addresses (``array.ctypes.data``). `call` releases the interpreter lock; `short_call` keeps
-    it, because acquiring the lock again may take longer than a call of a few microseconds.
+    it, because acquiring the lock again may take longer than a call of a few microseconds. `unit`: all that the code follows from, and
+    its source, from which other code can be made (`stiffmbs.compile.machine.compiler.in_shared_library`).
     """
 
     address: int
     call: Callable[..., Any]
     short_call: Callable[..., Any]
+    name: str = ""
+    unit: Any = None
 
 
 def sealed(entry: str, code: bytes) -> bytes:
@@ -65,7 +68,7 @@ def linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compile
         if not address:
             return None
         call, short_call = (made(*_prototype(signature))(address) for made in (ctypes.CFUNCTYPE, ctypes.PYFUNCTYPE))
-        found[name] = Compiled(address, call, short_call)
+        found[name] = Compiled(address, call, short_call, name)
     return found
 
 

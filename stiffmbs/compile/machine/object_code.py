@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...cache import entries
 from ...cache.source_files import digest_of
@@ -28,7 +28,14 @@ _SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "ins
 """Passes for straight code, and for routines that spend their time in kernels; none transforms loops or vectorises."""
 
 
-def object_code(assembly: str, level: int, unrolled: bool, processor: str = "") -> bytes:
+class Target(NamedTuple):
+    """Platform of code for a shared library: LLVM's names of the platform and of its processor."""
+
+    triple: str
+    processor: str
+
+
+def object_code(assembly: str, level: int, unrolled: bool, processor: str = "", target: Target | None = None) -> bytes:
     """Return the object code of a module.
 
     Parameters
@@ -41,14 +48,22 @@ def object_code(assembly: str, level: int, unrolled: bool, processor: str = "") 
         Whether the usual passes unroll loops.
     processor : str
         Name of a processor as LLVM has it; by default this one.
+    target : Target
+        Platform of position-independent code for a shared library, whose functions are hidden outside of it; by
+        default, code for this process.
     """
     import llvmlite.binding as llvm
 
     module = llvm.parse_assembly(assembly.replace(INLINE, "") if level == FULL else assembly)
-    module.triple = llvm.get_process_triple()
+    module.triple = target.triple if target else llvm.get_process_triple()
     options = llvm.create_pipeline_tuning_options(speed_level=level)
     options.loop_unrolling = unrolled
-    emitter = _emitter(level, processor)
+    emitter = _library_emitter(level, target) if target else _emitter(level, processor)
+    if target:
+        module.data_layout = str(emitter.target_data)
+        for function in module.functions:
+            if not function.is_declaration and function.linkage.name == "external":
+                function.visibility = "hidden"
     builder = llvm.create_pass_builder(emitter, options)
     if level == FULL:
         passes = builder.getModulePassManager()
@@ -76,6 +91,13 @@ def origin() -> str:
     return entries.digest(machine(), digest_of([Path(__file__)]))
 
 
+def llvm_version() -> str:
+    """Return the version of LLVM, on which code for other platforms depends besides the platform."""
+    import llvmlite
+
+    return str(llvmlite.__version__)
+
+
 def generic_machine() -> str:
     """Return a digest of the processor of the library's code; empty if this processor cannot execute it."""
     import llvmlite.binding as llvm
@@ -101,3 +123,16 @@ def new_target(level: int, processor: str = "") -> llvm.TargetMachine:
 
 
 _emitter = cache(new_target)
+
+
+@cache
+def _library_emitter(level: int, target: Target) -> llvm.TargetMachine:
+    """Return a target machine of LLVM for shared libraries of a platform."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    of_triple = llvm.Target.from_triple(target.triple)
+    return of_triple.create_target_machine(
+        cpu=target.processor, features="", opt=level, reloc="pic", codemodel="default"
+    )

@@ -41,17 +41,22 @@ class Routine:
     @property
     def call(self) -> Callable[..., Any]:
         """Function for calls from Python; pointers are passed as addresses."""
-        return (self._changed if parameters_are_changed() else self._usual).call
+        return self.compiled.call
 
     @property
     def short_call(self) -> Callable[..., Any]:
         """Function for calls of a few microseconds, which keep the interpreter lock."""
-        return (self._changed if parameters_are_changed() else self._usual).short_call
+        return self.compiled.short_call
 
     @property
     def address(self) -> int:
         """Address for calls from compiled code."""
-        return (self._changed if parameters_are_changed() else self._usual).address
+        return self.compiled.address
+
+    @property
+    def compiled(self) -> Compiled:
+        """The compiled function, with the unit that it belongs to."""
+        return self._changed if parameters_are_changed() else self._usual
 
     @cached_property
     def _usual(self) -> Compiled:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import arrays_of, fill, packed
+from ...compile.machine.layout import Table, arrays_of, fill, packed
 from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import together
 from ...compile.state import State
@@ -63,7 +63,7 @@ class Eliminated:
         self.pivots_tell = self.serves and bool(
             resisting.max(initial=0.0) < ELIMINATION.even * resisting.min(initial=np.inf)
         )
-        self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
+        self.table = Table(ELIMINATED)
         self._cells = self.table.view(ELIMINATED.cells)[0]
         if self.serves:
             of_pins = pin_lists(joints, system, kept) if system.of_body.dimensions == 2 else None
@@ -79,7 +79,7 @@ class Eliminated:
                 "left": np.zeros(system.n_c), "sizes": np.zeros(system.n_c),
                 "j_source": jacobian.source[kept], "j_row": jacobian.row[kept], "j_column": jacobian.column[kept],
                 "gamma_source": gamma.source[own], "gamma_row": gamma.row[own],
-                "lists": packed(layout, self._lists), "pivot_scale": scale, "largest_scale": self._largest_scale,
+                "pivot_scale": scale, "largest_scale": self._largest_scale,
             }  # fmt: skip
             numbers = {
                 "n_scales": len(self._largest_scale),
@@ -93,17 +93,18 @@ class Eliminated:
             self._arrays = {
                 **arrays_of(ELIMINATED, arrays),
                 "state": state.table,
+                "lists": packed(layout, self._lists),
                 "kept": 1.0,
                 "log_mass": float(np.log(system.mass).sum()),
                 "least": ELIMINATION.least_residual * min(1.0, system.size),
                 **numbers,
             }
-            fill(self.table, ELIMINATED, self._arrays)
+            fill(self.table, self._arrays)
 
     def within_reach(self) -> np.ndarray:
         """Return the table, with the addresses of its routines for compiled code without its own references to them."""
         for name, routine in (("attempt", ATTEMPT), ("factor", FACTOR), ("move", MOVE)):
-            self._cells[name] = routine.address
+            self.table.link(name, routine)
         return self.table
 
     def forget(self) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compile.inputs.features import NO_FEATURES, InputFeatures
 from ...compile.law_intervals import intervals_of
-from ...compile.machine.layout import fill
+from ...compile.machine.layout import Table, fill
 from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
@@ -44,7 +44,7 @@ class EventSearch:
         self.n, self.found = n, np.zeros(n, dtype=np.int64)
         self.n_event_functions = n_event_functions
         self.band, self.farthest = np.zeros(n_event_functions), np.zeros(n_event_functions)
-        self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
+        self.table = Table(EVENT_SEARCH)
         self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
             return  # no search: its arrays are not read
@@ -66,7 +66,7 @@ class EventSearch:
             **self._extent,
             **_calls(system), "row": np.zeros((NODES + 1) * (n_state + n_lam)), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
-        fill(self.table, EVENT_SEARCH, self._arrays)
+        fill(self.table, self._arrays)
 
     def end_steps_at_kinks(self) -> None:
         """End steps at the kinks of tables from now on."""
@@ -83,7 +83,7 @@ class EventSearch:
     def follow_reactions(self, dynamics: Dynamics) -> None:
         """Let reactions in event functions follow from accelerations: those of an integrator have no error test."""
         if self.n:
-            self._cells["dynamics"] = dynamics.table.ctypes.data
+            self.table.link("dynamics", dynamics.table)
 
     def watch_for(self, band: np.ndarray) -> None:
         """Pass events where event functions leave a band about zero; at zero for those without, of value 0."""
@@ -156,7 +156,7 @@ class StepBound:
 
     def __init__(self, at_bends: bool = False) -> None:
         self._at_bends = at_bends
-        self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)  # no features: its arrays are not read
+        self.table = Table(STEP_BOUND)  # no features: its arrays are not read
         self._cells = self.table.view(STEP_BOUND.cells)[0]
         self._followed = NO_FEATURES
 
@@ -174,4 +174,4 @@ class StepBound:
             "n": len(features.starts), "starts": np.ascontiguousarray(features.starts), "longest": np.ascontiguousarray(features.longest),
             "n_bends": len(bends), "bends": np.ascontiguousarray(bends),
         }  # fmt: skip
-        fill(self.table, STEP_BOUND, self._kept)
+        fill(self.table, self._kept)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import fill
+from ...compile.machine.layout import Table, fill
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ..ida.native.parameters import LOOP
@@ -85,10 +85,10 @@ class WholeStepLog:
     def __init__(self, system: System, width: int) -> None:
         room = _room(width) if system.has_functions else 0
         self._rows, self._shape = np.empty((room, 2 + len(WHOLE) * width)), (len(WHOLE), width)
-        self.table = np.zeros(len(WHOLE_STEPS), dtype=np.int64)
+        self.table = Table(WHOLE_STEPS)
         if room:
             arrays = {"n_nodes": len(WHOLE), "node": WHOLE, "width": width, "row": self._rows, "room": room}
-            fill(self.table, WHOLE_STEPS, arrays)
+            fill(self.table, arrays)
         self._cells = self.table.view(WHOLE_STEPS.cells)[0]
 
     def forget(self) -> None:

@@ -7,7 +7,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from ...compile.machine.layout import address, addresses
+from ...compile.machine.layout import address
 from ...compile.machine.native.statuses import NOT_FINITE, SINGULAR, STEP_TOO_SMALL, STIFF
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
@@ -58,11 +58,13 @@ class Integration:
     t, span, h, stable, eliminates = _Cell(float), _Cell(float), _Cell(float), _Cell(float), _Cell(bool)
 
     def __init__(
-        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
-    ) -> None:
+        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, capacity: int | None = None
+    ) -> None:  # fmt: skip
         self.scheme = scheme
         n_q = len(start.q)
-        self._memory = memory = dynamics.kept(f"steps of {scheme.name}", None, lambda: StepMemory(scheme, dynamics))
+        self._memory = memory = dynamics.kept(
+            f"steps of {scheme.name}", capacity, lambda: StepMemory(scheme, dynamics, capacity)
+        )
         self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been collected
@@ -70,7 +72,7 @@ class Integration:
         self.watch.end_steps_at_kinks()
         self.watch.follow_reactions(dynamics)
         self.watch.resolve(grid.end - grid.start)
-        memory.renew(*addresses(self.watch.table, self.step_bound.table))
+        memory.renew(self.watch.table, self.step_bound.table)
         self.y, self.q, self.u, self.at = memory.y, memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
@@ -81,6 +83,11 @@ class Integration:
         cells["t"] = cells["t_before"] = grid.start
         cells["h"], cells["repeats"] = settings.step, 1.0
         self.begin(start)
+
+    @property
+    def memory(self) -> StepMemory:
+        """Arrays of the steps, and their table."""
+        return self._memory
 
     @property
     def unresolved(self) -> float:

@@ -66,10 +66,9 @@ class LinearlyImplicit:
         if memory.needed:
             memory.known["setup_pivots"], memory.known["solve_pivots"] = SparseLU.factor.address, SparseLU.solve.address
         self._equations_table, self._lists = equations.table()
-        self._restricted = state, _ = dynamics.state.restricted(equations.used())
         n = system.n_q + system.n_u
         self._arrays = {
-            "state": state, "equations": self._equations_table, "columns": columns,
+            "state": dynamics.state.restricted(equations.used()), "equations": self._equations_table, "columns": columns,
             "setup": solver.factor.address, "solve": solver.solve.address, "solver": np.array([memory.content.ctypes.data]),
             "entries": memory.factors["a"], **_cells(memory), "b": np.zeros(equations.n), "x": np.zeros(equations.n),
             "start": np.zeros(n), "whole": np.zeros(n),

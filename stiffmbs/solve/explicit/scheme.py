@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...compile.machine.layout import address, packed
+from ...compile.machine.layout import Table, packed
 from ...compile.machine.routines import Routine
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.native.parameters import CONSISTENCY
@@ -95,7 +95,7 @@ class Scheme:
         }  # fmt: skip
 
     @cached_property
-    def table(self) -> np.ndarray:
+    def table(self) -> Table:
         """Addresses for compiled code (`stiffmbs.solve.explicit.native.layouts.SCHEME`)."""
         return packed(SCHEME, self._arrays)
 
@@ -111,8 +111,6 @@ class Scheme:
 ADVANCE = Routine(
     "stiffmbs.solve.explicit.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)"
 )
-WATCH, STEP_BOUND, TIMES = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "times"))
-"""Columns of the table that each run sets."""
 
 
 class StepMemory:
@@ -128,12 +126,12 @@ class StepMemory:
     - `cells`: cells of the table by name.
     """
 
-    def __init__(self, scheme: Scheme, dynamics: Dynamics) -> None:
+    def __init__(self, scheme: Scheme, dynamics: Dynamics, capacity: int | None = None) -> None:
         system, eliminated = dynamics.system, dynamics.eliminated
         n = system.n_q + system.n_u
-        self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
+        self.capacity = capacity = capacity or max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
         self.y, self.lam, self.atol = np.zeros(n), np.zeros(system.n_c), np.zeros(n)
-        self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
+        self.row_t, self.row_y, self.ends = (np.zeros(shape) for shape in (capacity, (capacity, n), capacity))
         stages, self.whole_steps = np.zeros((scheme.extended, n)), WholeStepLog(system, n)
         self.end_rates = stages[scheme.stages]
         nothing = np.zeros(1, dtype=np.int64)
@@ -148,7 +146,7 @@ class StepMemory:
             "linear_step": 0, "linear": nothing, **self._linear_steps(scheme, dynamics),
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
-        self.cells, self._new = self.table.view(EXPLICIT.cells)[0], self.table.copy()
+        self.cells, self._new = self.table.view(EXPLICIT.cells)[0], np.array(self.table)
 
     def _linear_steps(self, scheme: Scheme, dynamics: Dynamics) -> dict[str, Any]:
         """Return the entries of linearly implicit steps; none for explicit schemes."""
@@ -158,12 +156,13 @@ class StepMemory:
         from .linearly_implicit import LINEAR_STEP, LinearlyImplicit
 
         self._linear = LinearlyImplicit(dynamics, scheme.columns)
-        return {"linear_step": LINEAR_STEP.address, "linear": self._linear.table}
+        return {"linear_step": LINEAR_STEP, "linear": self._linear.table}
 
-    def renew(self, watch: int, step_bound: int) -> None:
-        """Reset all cells for a new run, and set the addresses of its tables."""
+    def renew(self, watch: Table, step_bound: Table) -> None:
+        """Reset all cells for a new run, and link its tables."""
         self.table[:] = self._new
-        self.table[[WATCH, STEP_BOUND]] = watch, step_bound
+        self.table.link("watch", watch)
+        self.table.link("step_bound", step_bound)
         self.whole_steps.forget()
         if self._linear:
             self._linear.forget()
@@ -175,5 +174,5 @@ class StepMemory:
 
     def report_at(self, times: np.ndarray) -> None:
         """Report at these output times, s, from now on."""
-        self._times = times
-        self.table[TIMES], self.cells["n_times"], self.cells["next_time"] = address(times), len(times), 0
+        self.table.link("times", times)
+        self.cells["n_times"], self.cells["next_time"] = len(times), 0

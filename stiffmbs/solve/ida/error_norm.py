@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import fill
+from ...compile.machine.layout import Table, fill
 from ...compile.machine.routines import Routine
 from ..linear_solvers.linear_solver import Assembled
 from .native.layouts import ERROR_NORM, ITERATION
@@ -21,7 +21,7 @@ class ErrorNorm:
     """
 
     def __init__(self, n: int) -> None:
-        self.table = np.zeros(len(ERROR_NORM), dtype=np.int64)
+        self.table = Table(ERROR_NORM)
         self._cells = self.table.view(ERROR_NORM.cells)[0]
         self.forget()
         self._change, self._filtered = np.zeros(n), np.zeros(n)
@@ -45,7 +45,6 @@ class ErrorNorm:
         }  # fmt: skip
         fill(
             self.table,
-            ERROR_NORM,
             {
                 "memory": memory, **{name: libraries.address(function) for name, function in functions.items()},
                 "iteration": iteration, "state": state, "equations": equations,
@@ -82,7 +81,7 @@ class Iteration:
 
     def __init__(self, n: int, has_kinks: bool) -> None:
         self._n, self._has_kinks = n, has_kinks
-        self.table = np.zeros(len(ITERATION), dtype=np.int64)
+        self.table = Table(ITERATION)
         self._cells = self.table.view(ITERATION.cells)[0]
         self._cells["cj"] = np.inf
 
@@ -92,7 +91,6 @@ class Iteration:
         made = libraries.SUNNonlinSol_Newton(y_vector, session.context)
         fill(
             self.table,
-            ITERATION,
             {
                 "n": self._n, "has_kinks": int(self._has_kinks), "memory": memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),

@@ -124,7 +124,7 @@ class NativeIda:
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
         self.equations_table, self._slots = self._equations.table()
-        self.state_table, self._calls = self._state.restricted(self._equations.used())
+        self.state_table = self._state.restricted(self._equations.used())
         return packed(
             NATIVE_IDA,
             {

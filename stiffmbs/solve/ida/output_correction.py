@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import fill
+from ...compile.machine.layout import Table, fill
 from ...dynamics.dynamics import Dynamics
 from ..linear_solvers.linear_solver import Assembled, LinearSolver
 from .native.layouts import OUTPUT_CORRECTION
@@ -22,7 +22,7 @@ class OutputCorrection:
 
     def __init__(self, equations: Equations) -> None:
         self._equations = equations
-        self.table = np.zeros(len(OUTPUT_CORRECTION), dtype=np.int64)
+        self.table = Table(OUTPUT_CORRECTION)
         self._cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
         self._cells["long"] = np.inf
         self._assembled: Assembled | None = None
@@ -52,7 +52,6 @@ class OutputCorrection:
         }  # fmt: skip
         fill(
             self.table,
-            OUTPUT_CORRECTION,
             {
                 "memory": memory,
                 **{name: libraries.address(function) for name, function in functions.items()},

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...compile.equations import ABSENT, Equations
 from ...compile.law_intervals import has_kinks
-from ...compile.machine.layout import fill, packed
+from ...compile.machine.layout import Table, fill, packed
 from ...compile.state import State
 from ...model.settings import RunSettings
 from ...sparse.elimination_order import EliminationOrder
@@ -108,7 +108,7 @@ class Radau:
         self._tables = {count: packed(COLLOCATION, arrays) for count, arrays in self._coefficients.items()}
         self._methods = methods
         self._most = max(methods)
-        self._words = np.zeros(len(RADAU), dtype=np.int64)
+        self._words = Table(RADAU)
         self.repeat, self.resolves = REPEAT.address, RESOLVES.address
 
     def libraries(self) -> Libraries:
@@ -166,7 +166,7 @@ class Radau:
             "has_kinks": int(has_kinks(system)),
             **asdict(parameters_of(self._parameters)),
         }  # fmt: skip
-        fill(self._words, RADAU, values)
+        fill(self._words, values)
         self._kept = values, solvers
 
     def _addresses(self, more: int) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""FMUs of scenes, built by PythonFMU (FMI 2.0, co-simulation)."""
+"""FMUs of scenes (FMI 2.0): with Python, built by PythonFMU, or without."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import re
 import shutil
 import sys
 import tempfile
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import scene_text
 from ...results.files import refuse_path, written_whole
 from ..simulation import simulation
+from .standalone.build import Written, write_standalone_fmu
+from .standalone.description import VERSIONS
 
 ABOUT, SCENE = "model.json", "scene.yaml"
 """Files among the FMU's resources: its variables, and the scene."""
@@ -42,12 +45,13 @@ LONGEST_NAME = 60
 
 
 def build_fmu(
-    path: str | Path, output: str | Path, outputs: Sequence[str] = (), changes: Sequence[tuple[str, str]] = ()
-) -> tuple[str, ...]:
-    """Write an FMU for co-simulation, FMI 2.0: the scene's inputs, parameters, and channels as outputs.
+    path: str | Path, output: str | Path, outputs: Sequence[str] = (), changes: Sequence[tuple[str, str]] = (), native: bool = False, version: str = "2.0"
+) -> tuple[str, ...]:  # fmt: skip
+    """Write an FMU: the scene's inputs, parameters, and channels as outputs.
 
-    The FMU needs this package in the Python of the program that runs it.  Inputs are constant over a communication
-    step.
+    By default, the FMU is for co-simulation, and needs this package in the Python of the program that runs it.  A native
+    FMU has machine code instead of Python, for co-simulation and model exchange.  Its parameters are fixed when it is
+    written.  Inputs are constant over a communication step of co-simulation.
 
     Parameters
     ----------
@@ -59,6 +63,10 @@ def build_fmu(
         Channels; by default the requests of the scene, or all channels if it has none.
     changes : sequence of (path, text)
         Values that replace those of the file.
+    native : bool, optional
+        True for an FMU without Python; warnings tell what it does less well than a run.
+    version : {'2.0', '3.0'}, optional
+        Version of FMI; an FMU with Python is of version 2.0.
 
     Returns
     -------
@@ -68,11 +76,35 @@ def build_fmu(
     Raises
     ------
     InputError
-        If the scene is invalid, has stages or needs other files, there is no such channel, or PythonFMU is missing.
+        If the scene is invalid, or has stages, or there is no such channel.  With Python, also if it needs other files, or
+        PythonFMU is missing; without, if only an FMU with Python can solve the scene, or there is no C compiler.
     """
+    found = written_fmu(path, output, outputs, changes, native, version)
+    for note in found.notes:
+        warnings.warn(note, RuntimeWarning, stacklevel=2)
+    return found.outputs
+
+
+def written_fmu(
+    path: str | Path, output: str | Path, outputs: Sequence[str], changes: Sequence[tuple[str, str]], native: bool, version: str
+) -> Written:  # fmt: skip
+    """Write an FMU, and return its outputs and notes; parameters and errors as for `build_fmu`."""
     refuse_text("outputs", outputs, "channels")
     target = Path(output)
     refuse_path("-o", target, "fmu")
+    if version not in VERSIONS[: 1 + native]:
+        others = " or ".join(VERSIONS) if native else f"{VERSIONS[0]}, or an FMU without Python"
+        raise InputError(f"version: found '{version}', expected {others}")
+    if native:
+        scene = load_scene(path, changes)
+        return write_standalone_fmu(scene, target, model_name(path), outputs, _NOT_IN_XML.sub("?", scene.name), version)
+    return Written(_written_with_python(path, target, outputs, changes))
+
+
+def _written_with_python(
+    path: str | Path, target: Path, outputs: Sequence[str], changes: Sequence[tuple[str, str]]
+) -> tuple[str, ...]:
+    """Write an FMU that needs Python, and return its outputs."""
     with needs("pythonfmu", "fmu"):
         from pythonfmu.builder import FmuBuilder
     scene = load_scene(path, changes)

@@ -46,7 +46,7 @@ def by_sparse_lu(job: Job) -> Job:
 def kernel_seconds(job: Job, trajectory: Trajectory) -> float:
     """What the residual and matrix kernels of a run by `bdf` take alone, at the state that it ended with."""
     equations = bdf_integrator(job.dynamics, job.settings).engine.equations
-    table, _kept = job.dynamics.state.restricted(equations.used())
+    table = job.dynamics.state.restricted(equations.used())
     form = equations.formulation
     return sum(
         _least(table, list(TERM_SETS).index(term_set), float(trajectory.t[-1])) * int(trajectory.statistics[count])

@@ -148,7 +148,7 @@ def share(make: Callable[[], ModelData], solver: str, duration: float) -> tuple[
 def matrix_times(dynamics: Dynamics, settings: RunSettings) -> tuple[float, float, float]:
     """Return the times of a real and of a complex factorisation, and of the kernels of a matrix, us."""
     formula, (factors, _) = factors_of(dynamics, settings)
-    table, _kept = dynamics.state.restricted(formula._equations.used())
+    table = dynamics.state.restricted(formula._equations.used())
     kernels = least(
         TERMS.call, 0.0, list(TERM_SETS).index(formula._equations.formulation.matrix_set), table.ctypes.data
     )

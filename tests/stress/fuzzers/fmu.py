@@ -1,10 +1,11 @@
-"""Compare FMUs of random scenes, simulated by FMPy with changing inputs, with runs of the scenes."""
+"""Compare FMUs of random scenes, with and without Python, simulated by FMPy with changing inputs, with runs of the scenes."""
 
 from __future__ import annotations
 
 import json
 import sys
 import tempfile
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,13 @@ from stiffmbs.errors import StiffmbsError, needs
 from stiffmbs.results.saved_state import SavedState
 from stiffmbs.solve.trajectory import Outcome as Ending
 from stiffmbs.studies.fmu.build import build_fmu
+from stiffmbs.studies.fmu.standalone.model import exported_model
 
 from ..case import Outcome, Verdict, measured, told
 from ..random_scenes.features import ALL
 from ..random_scenes.scene import random_scene
 
-WHAT = "FMUs of random scenes in FMPy, one or several in a process, with parameters and changing inputs, against `run`."
+WHAT = "FMUs of random scenes in FMPy, with and without Python, one or several in a process, with changing inputs, against `run`."
 GAIN, GIVEN, PUSH = "fmu_gain", "fmu_given", "fmu_push"
 """Parameter, input and force that are added to each scene."""
 STEPS, SEGMENTS = 20, 3
@@ -30,8 +32,16 @@ STEPS, SEGMENTS = 20, 3
 COSTLY = 0.1
 """Fractions of scenes with tyres and with parts, which take long to compile."""
 RTOL = 1e-8
+NATIVE = 0.5
+"""Fraction of FMUs without Python."""
+EXCHANGE_RTOL = 1e-10
+"""Tolerance of the integrator for model exchange, which knows no sizes of coordinates."""
+INDISTINCT = 1e-6
+"""Part of the duration, and of a step, in which times count as one."""
 BOUND = 1e-5
 """Allowed difference relative to the size of a channel: 1000 times the tolerance, because errors grow at events."""
+OF_EXCHANGE = 10.0
+"""Factor on it for model exchange: CVode has one tolerance for all states, and FMPy locates events less sharply."""
 FLOOR = 1e-2
 """Smallest size of a channel, m, rad, and these per second."""
 IN_DOUBT = "last digits", "more than one motion may follow"
@@ -53,20 +63,28 @@ def trial(seed: int) -> Verdict:
     given = [
         Given(float(rng.uniform(-1, 1)), tuple(rng.uniform(-2, 2, SEGMENTS))) for _ in range(rng.choice([1, 1, 2, 4]))
     ]
-    detail = f"{content.get('dimensions', 2)}D, {len(given)} instances, {json.dumps(content)[:600]}"
+    native = bool(np.random.default_rng([seed, 1]).random() < NATIVE)
+    if native:  # its parameters are fixed
+        given = [replace(each, gain=given[0].gain) for each in given]
+    detail = f"{('exchange' if seed % 2 else 'native') if native else 'Python'}, {content.get('dimensions', 2)}D, {len(given)} instances, {json.dumps(content)[:600]}"
     with tempfile.TemporaryDirectory() as made:
         scene, fmu = Path(made) / "scene.yaml", Path(made) / "scene.fmu"
         scene_text = json.dumps(content)
         scene.write_text(scene_text, encoding="utf-8")
         try:
             channels = _channels(scene)
-            build_fmu(scene, fmu, channels)
+            if native:
+                channels = _built_without_python(scene, fmu, channels, given[0].gain)
+            else:
+                build_fmu(scene, fmu, channels)
             known = [_by_runs(scene, each, channels) for each in given]
         except StiffmbsError as refusal:
             return told(f"{refusal} [{detail}]", ())
         paths = list(sys.path)  # an FMU puts its own copy of PythonFMU before the installed one
         try:
-            found, faults = by_fmpy(fmu, content["run"]["duration"], given, channels)
+            exchanged = native and seed % 2 == 1
+            simulated = by_exchange if exchanged else by_fmpy
+            found, faults = simulated(fmu, content["run"]["duration"], given, channels)
         finally:
             sys.path[:] = paths
     if faults:
@@ -77,24 +95,32 @@ def trial(seed: int) -> Verdict:
         name: max(_difference(rows[:, k], of_run[:, k]) for rows, (of_run, _) in zip(found, known, strict=True) if rows is not None)
         for k, name in enumerate(channels)
     }  # fmt: skip
-    worst = max(errors, key=lambda name: errors[name])
-    if not errors[worst] <= BOUND and (own := _own_error(scene_text, given[0], channels, known[0][0])) > BOUND:
+    worst, bound = max(errors, key=lambda name: errors[name]), BOUND * (OF_EXCHANGE if exchanged else 1.0)
+    if not errors[worst] <= bound and (own := _own_error(scene_text, given[0], channels, known[0][0], native)) > bound:
         return told(f"the motion itself is uncertain by {own:.1e} at this tolerance [{detail}]", ())
     doubts = [note for _, notes in known for note in notes if any(words in note for words in IN_DOUBT)]
-    if doubts and not errors[worst] <= BOUND:
+    if doubts and not errors[worst] <= bound:
         return told(f"{doubts[0]} [{detail}]", ())
-    return measured(errors[worst], BOUND, f"{worst}, {detail}")
+    return measured(errors[worst], bound, f"{worst}, {detail}")
 
 
-def _own_error(text: str, given: Given, channels: tuple[str, ...], known: np.ndarray) -> float:
-    """Return the difference of a run from one of a smaller tolerance, relative to the channels; errors grow in some motions."""
+def _own_error(text: str, given: Given, channels: tuple[str, ...], known: np.ndarray, native: bool) -> float:
+    """Return the difference of a run from one of a smaller tolerance, relative to the channels; errors grow in some motions.
+
+    `native`: True to compare a run by the integrator of FMUs without Python too.
+    """
     with tempfile.TemporaryDirectory() as made:
         scene = Path(made) / "scene.yaml"
         content = json.loads(text)
         content["run"]["rtol"] = RTOL / 100
         scene.write_text(json.dumps(content), encoding="utf-8")
         finer, _ = _by_runs(scene, given, channels)
-    return max(_difference(known[:, k], finer[:, k]) for k in range(len(channels)))
+        rows = [known]
+        if native:
+            content["run"] |= {"rtol": RTOL, "solver": "projected"}
+            scene.write_text(json.dumps(content), encoding="utf-8")
+            rows.append(_by_runs(scene, given, channels)[0])
+    return max(_difference(each[:, k], finer[:, k]) for each in rows for k in range(len(channels)))
 
 
 def _scene(rng: np.random.Generator) -> dict[str, Any]:
@@ -107,6 +133,17 @@ def _scene(rng: np.random.Generator) -> dict[str, Any]:
     content.setdefault("forces", {})[PUSH] = {"type": "force", "i": body, "force": [f"{GAIN} + {GIVEN}", *zeros]}
     content["run"] |= {"rtol": RTOL, "points": STEPS + 1}
     return content
+
+
+def _built_without_python(scene: Path, fmu: Path, channels: tuple[str, ...], gain: float) -> tuple[str, ...]:
+    """Build an FMU without Python, and return those of some channels that it has."""
+    changes = [(f"parameters.{GAIN}", repr(gain))]
+    places = exported_model(load_scene(scene, changes)).places
+    found = tuple(name for name in channels if name in places)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of stiff scenes
+        build_fmu(scene, fmu, found, changes, native=True)
+    return found
 
 
 def _channels(scene: Path) -> tuple[str, ...]:
@@ -157,7 +194,8 @@ def by_fmpy(
         instance.instantiate()
         instance.setupExperiment(startTime=0.0)
         instance.enterInitializationMode()
-        instance.setReal([refs[GAIN], refs[GIVEN]], [each.gain, each.inputs[0]])
+        values = {GAIN: each.gain, GIVEN: each.inputs[0]}
+        instance.setReal(*zip(*[(refs[name], value) for name, value in values.items() if name in refs], strict=True))
         instance.exitInitializationMode()
         instances.append(instance)
     rows: list[Any] = [[] for _ in given]
@@ -177,6 +215,33 @@ def by_fmpy(
         instance.terminate()
         instance.freeInstance()
     return [None if found is None else np.array(found) for found in rows], ""
+
+
+def by_exchange(
+    fmu: Path, duration: float, given: list[Given], channels: tuple[str, ...]
+) -> tuple[list[np.ndarray | None], str]:
+    """Return the same as `by_fmpy` from model exchange with the integrator CVode of FMPy."""
+    with needs("fmpy", "test"):
+        from fmpy import simulate_fmu
+        from fmpy.validation import validate_fmu
+    if faults := validate_fmu(str(fmu)):
+        return [], f"the validation finds {faults}"
+    rows: list[np.ndarray | None] = []
+    ends = np.linspace(0, STEPS, SEGMENTS + 1).astype(int) * duration / STEPS
+    for each in given:
+        points = [(time, value) for value, *both in zip(each.inputs, ends[:-1], ends[1:], strict=True) for time in both]
+        try:
+            found = simulate_fmu(
+                str(fmu), fmi_type="ModelExchange", solver="CVode", relative_tolerance=EXCHANGE_RTOL, stop_time=duration,
+                output_interval=duration / STEPS, output=list(channels), input=np.array(points, dtype=[("time", float), (GIVEN, float)]),
+            )  # fmt: skip
+        except Exception:  # FMPy's own, for a status other than OK
+            rows.append(None)
+            continue
+        last = np.r_[np.diff(found["time"]) > INDISTINCT * duration, True]
+        at = np.searchsorted(found["time"][last], (np.arange(STEPS) + 1 - INDISTINCT) * duration / STEPS)
+        rows.append(np.column_stack([found[name][last][at] for name in channels]))
+    return rows, ""
 
 
 def _difference(found: np.ndarray, expected: np.ndarray) -> float:

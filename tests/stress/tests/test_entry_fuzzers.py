@@ -2,6 +2,7 @@
 
 import pytest
 
+from stiffmbs.studies.fmu.standalone import model
 from stiffmbs.studies.simulation import Simulation
 from tests.stress.case import Outcome
 from tests.stress.fuzzers import fmu, injections
@@ -22,8 +23,19 @@ def test_fmus_move_as_runs_do(seed):
 def test_an_fmu_that_ignores_its_inputs_is_found(monkeypatch):
     pytest.importorskip("fmpy")
     step = Simulation.step
+    monkeypatch.setattr(fmu, "NATIVE", 0.0)
     monkeypatch.setattr(Simulation, "step", lambda self, length, inputs: step(self, length, {}))
     assert fmu.trial(1).outcome is Outcome.WRONG
+
+
+@pytest.mark.parametrize("seed", [1, 8])
+def test_an_fmu_without_python_that_ignores_its_inputs_is_found(monkeypatch, seed):
+    """By model exchange, and by co-simulation."""
+    pytest.importorskip("fmpy")
+    monkeypatch.setattr(fmu, "NATIVE", 1.0)
+    assert fmu.trial(seed).outcome is Outcome.RIGHT
+    monkeypatch.setattr(model, "_numbers", lambda job, solver, inputs: ())
+    assert fmu.trial(seed).outcome is Outcome.WRONG
 
 
 @pytest.mark.sampled(3)

@@ -17,8 +17,8 @@ set: bodies (first coordinates) whose shared values it reads, number of kernel c
 of `CALL`) and of its values. First row of each joint; tolerance of each equation; 0 for velocities that no coordinate
 follows, else 1; number of evaluations."""
 
-CALL = ("kernel", "count", "index", "number", "place")
-"""Arguments of one kernel call, as 64-bit numbers."""
+CALL = Layout({"kernel": INT, "count": INT, "index": INTS, "number": FLOATS, "place": INTS})
+"""Arguments of one kernel call; `kernel` is the address of a compiled function."""
 
 DIRECTION = Layout({
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS,

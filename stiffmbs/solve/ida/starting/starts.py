@@ -96,7 +96,7 @@ class Starts:
         for term_set in ("position", "event_function"):
             self._state.load(term_set)
         self._values |= self._of_restarts()
-        fill(self._table, START, self._values)
+        fill(self._table, self._values)
         return self._at
 
     def restart(
