@@ -11,9 +11,9 @@ from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.machine.image import image_of
 from stiffmbs.compile.machine.layout import FLOATS, INT, INTS, Layout, Table, address, packed
 from stiffmbs.compile.machine.native.tables import FACTORS
-from stiffmbs.solve.explicit import DOP853
 from stiffmbs.solve.explicit.integration import Integration
 from stiffmbs.solve.explicit.scheme import ADVANCE
+from stiffmbs.solve.explicit.schemes import DOP853
 
 from ..conftest import EXAMPLE_SCENES
 

@@ -23,10 +23,10 @@ from ....results.channels import channels_of_model, motion_channels, state_chann
 from ....results.joint_angles import joint_angles
 from ....run_checks.tables import may_refuse
 from ....solve.auto import begins_implicit
-from ....solve.explicit import DOP853
 from ....solve.explicit.integration import Integration
 from ....solve.explicit.native.parameters import CONTROL
 from ....solve.explicit.scheme import ADVANCE
+from ....solve.explicit.schemes import DOP853
 from ....solve.explicit.stable_step import rates_at
 from ....solve.explicit.state_space import CONSISTENT_RATES, EVENT_FUNCTIONS
 from ....solve.settings import changed, traits_of
