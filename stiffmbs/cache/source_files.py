@@ -11,12 +11,11 @@ PYTHON = ".py"
 NOT_READ = "__pycache__"
 
 
-def digest_of(files: Iterable[str | Path]) -> str:
+def digest_of(files: Iterable[Path]) -> str:
     """Return a digest of the contents of some files, in their order."""
     found = hashlib.sha256()
     for file in files:
-        with open(file, "rb", buffering=0) as content:
-            found.update(content.read() + b"\0")
+        found.update(file.read_bytes() + b"\0")
     return found.hexdigest()
 
 
@@ -25,11 +24,11 @@ def python_files(folder: Path) -> list[Path]:
     return [folder / name for name in sorted(os.listdir(folder)) if name.endswith(PYTHON)]
 
 
-def files_within(package: Path) -> Iterator[str]:
-    """Yield the paths of all files of a package, sorted by name; as texts, of which many are made faster than of `Path`."""
+def files_within(package: Path) -> Iterator[Path]:
+    """Yield all files of a package, sorted by name."""
     for place, folders, names in os.walk(package):
         folders[:] = sorted(set(folders) - {NOT_READ})
-        yield from (os.path.join(place, name) for name in sorted(names))
+        yield from (Path(place, name) for name in sorted(names))
 
 
 def versions_within(folder: str) -> Iterator[tuple[str, int, int]]:
@@ -44,9 +43,9 @@ def versions_within(folder: str) -> Iterator[tuple[str, int, int]]:
             yield from versions_within(entry.path)
 
 
-def modules_within(package: Path, folder: str) -> Iterator[str]:
-    """Yield the paths of the modules in all folders of a name within a package, and in their subfolders, sorted by name."""
+def modules_within(package: Path, folder: str) -> Iterator[Path]:
+    """Yield the modules in all folders of a name within a package, and in their subfolders, sorted by name."""
     for place, folders, names in os.walk(package):
         folders[:] = sorted(set(folders) - {NOT_READ})
-        if folder in place.removeprefix(str(package)).split(os.sep):
-            yield from (os.path.join(place, name) for name in sorted(names) if name.endswith(PYTHON))
+        if folder in Path(place).relative_to(package).parts:
+            yield from (Path(place, name) for name in sorted(names) if name.endswith(PYTHON))

@@ -92,10 +92,7 @@ def _reader() -> str:
 
     package = Path(__file__).parents[2]
     rooms = "reading", "flexible_bodies", "elements", "model"
-    files: list[str | Path] = [
-        package / "solver_names.py",
-        *(file for room in rooms for file in files_within(package / room)),
-    ]
+    files = [package / "solver_names.py", *(file for room in rooms for file in files_within(package / room))]
     versions = sys.version, numpy.__version__, pydantic.VERSION, installed_version("ruamel.yaml")
     return entries.digest(*versions, digest_of(files))
 
