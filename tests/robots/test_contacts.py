@@ -232,6 +232,7 @@ def overlapping(rng, n=7):
     return f'<mujoco><option>{flags}</option><worldbody><geom name="g{n}" size="1"/>{bodies}</worldbody><contact>{pairs}</contact></mujoco>'
 
 
+@pytest.mark.skipif(int(mujoco.__version__.split(".")[0]) < 4, reason="margins have another meaning before MuJoCo 4")
 @pytest.mark.parametrize("seed", range(30))
 def test_pairs_and_their_stiffness_are_those_of_mujoco(tmp_path, seed):
     path = tmp_path / "overlapping.xml"
