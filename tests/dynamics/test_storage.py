@@ -55,6 +55,7 @@ def test_results_in_files_are_those_in_memory(examples, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.xfail(strict=True, reason="the estimate of errors takes 550 bytes for each output point")
 def test_two_million_points_take_less_memory_than_their_rows():
     """The rows of one pinned bar would be 30 numbers each: 480 MB."""
     program = (
@@ -62,10 +63,10 @@ def test_two_million_points_take_less_memory_than_their_rows():
         "peak = lambda: int(pathlib.Path('/proc/self/status').read_text().partition('VmHWM:')[2].split()[0]) / 1024;"
         "m = stiffmbs.Model(gravity=(0, -9.81)); b = m.add('bar', stiffmbs.Body(mass=1, inertia=0.1, position=(0.5, 0)));"
         "m.add('pin', stiffmbs.Revolute(i=b.at(-0.5, 0), j='ground'));"
-        "stiffmbs.run(m, duration=1.0, points=11, errors=False); before = peak();"
-        "s = stiffmbs.run(m, duration=1.0, points=2_000_000, errors=False);"
+        "stiffmbs.run(m, duration=1.0, points=11); before = peak();"
+        "s = stiffmbs.run(m, duration=1.0, points=2_000_000);"
         "print(len(s.time), peak() - before)"
     )
     shown = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
     assert int(shown[0]) == 2_000_000
-    assert float(shown[1]) < 480
+    assert float(shown[1]) < 330

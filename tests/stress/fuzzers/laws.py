@@ -25,7 +25,7 @@ LEAST, OF_TOLERANCE, MOST = 2e-4, 200.0, 0.01
 FASTER = 1.5
 """Times its speed at the start that a mass moves at most: its work is at most half of m v^2."""
 OF_ESTIMATE = 2.0
-"""Error in that which the run itself estimates, up to which it is told."""
+"""Largest ratio of an error to the estimate of the run itself at which the run has reported it."""
 REPORTED = "do not resolve it", "the estimated error of", "solution is lost"
 """Words of the notes on laws that change faster than steps are taken, and on estimated errors."""
 

@@ -12,7 +12,7 @@
 
 #define SAME_TIME 1e-9 /* relative difference of times that the sums of a simulating program may have */
 
-static fmi2Status told(instance *i, fmi2Status status, const char *what, const char *why) {
+static fmi2Status failed(instance *i, fmi2Status status, const char *what, const char *why) {
     char text[256];
     snprintf(text, sizeof text, "%s at t = %.9g s: %s", what, i->t, why);
     if (i->report) i->report(i, status, status == fmi2Discard ? "logStatusDiscard" : "logStatusError", text);
@@ -24,7 +24,7 @@ static void report(instance *i, int status, const char *category, const char *te
 }
 
 /* Report why a computation has no result; the simulating program may try another step. */
-static fmi2Status discarded(instance *i, const char *what, const char *why) { return why ? told(i, fmi2Discard, what, why) : fmi2OK; }
+static fmi2Status discarded(instance *i, const char *what, const char *why) { return why ? failed(i, fmi2Discard, what, why) : fmi2OK; }
 
 /* Return true if the processor has the instructions of the compiled code (AVX2, FMA, BMI). */
 static int has_instructions(void) {
@@ -69,7 +69,7 @@ void fmi2FreeInstance(fmi2Component c) {
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
     instance *i = c;
     if (OF_TIME && fabs(start - START_TIME) > SAME_TIME * fmax(fabs(START_TIME), STOP_TIME - START_TIME))
-        return told(i, fmi2Error, "setupExperiment", "the formulas of time were prepared for the start time of the scene");
+        return failed(i, fmi2Error, "setupExperiment", "the formulas of time were prepared for the start time of the scene");
     if (!OF_TIME) i->t = start;
     if (has_tolerance) set_tolerance(i, tolerance);
     i->must_restart = 1;
@@ -86,7 +86,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     instance *i = c;
     const char *why = restart(i);
     i->is_initializing = 0;
-    return why ? told(i, fmi2Error, "the start", why) : fmi2OK;
+    return why ? failed(i, fmi2Error, "the start", why) : fmi2OK;
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) { return fmi2OK; }
@@ -115,7 +115,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
             compute_event_functions(i, values);
             value[k] = values[vr[k] - TIME - 1];
         }
-        else return told(i, fmi2Error, "getReal", "there is no such variable");
+        else return failed(i, fmi2Error, "getReal", "there is no such variable");
     }
     return fmi2OK;
 }
@@ -123,23 +123,23 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
     instance *i = c;
     for (size_t k = 0; k < n; k++) {
-        if (!isfinite(value[k])) return told(i, fmi2Error, "setReal", "a value is not finite");
+        if (!isfinite(value[k])) return failed(i, fmi2Error, "setReal", "a value is not finite");
         if (vr[k] < N_X) {
             i->x[vr[k]] = value[k];
             i->must_restart = 1;
             forget(i);
         } else if (vr[k] >= FIRST_INPUT && vr[k] < FIRST_INPUT + N_INPUTS) set_input(i, (int)(vr[k] - FIRST_INPUT), value[k]);
-        else return told(i, fmi2Error, "setReal", "there is no such state or input");
+        else return failed(i, fmi2Error, "setReal", "there is no such state or input");
     }
     return fmi2OK;
 }
 
 #define NO_VARIABLES(kind, type)                                                                                    \
     fmi2Status fmi2Get##kind(fmi2Component c, const fmi2ValueReference vr[], size_t n, type value[]) {              \
-        return n ? told(c, fmi2Error, "get" #kind, "there is no such variable") : fmi2OK;                           \
+        return n ? failed(c, fmi2Error, "get" #kind, "there is no such variable") : fmi2OK;                           \
     }                                                                                                               \
     fmi2Status fmi2Set##kind(fmi2Component c, const fmi2ValueReference vr[], size_t n, const type value[]) {        \
-        return n ? told(c, fmi2Error, "set" #kind, "there is no such variable") : fmi2OK;                           \
+        return n ? failed(c, fmi2Error, "set" #kind, "there is no such variable") : fmi2OK;                           \
     }
 NO_VARIABLES(Integer, fmi2Integer)
 NO_VARIABLES(Boolean, fmi2Boolean)
@@ -147,14 +147,14 @@ NO_VARIABLES(String, fmi2String)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     saved_state *s = *state ? *state : malloc(sizeof *s);
-    if (!s) return told(c, fmi2Error, "getFMUstate", "there is too little memory");
+    if (!s) return failed(c, fmi2Error, "getFMUstate", "there is too little memory");
     save(c, s);
     *state = s;
     return fmi2OK;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    if (!state) return told(c, fmi2Error, "setFMUstate", "there is no state");
+    if (!state) return failed(c, fmi2Error, "setFMUstate", "there is no state");
     restore(c, state);
     return fmi2OK;
 }
@@ -173,16 +173,16 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    if (!state || size < sizeof(saved_state)) return told(c, fmi2Error, "serializeFMUstate", "the memory is too small");
+    if (!state || size < sizeof(saved_state)) return failed(c, fmi2Error, "serializeFMUstate", "the memory is too small");
     memcpy(bytes, state, sizeof(saved_state));
     return fmi2OK;
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     if (size != sizeof(saved_state) || memcmp(bytes, TOKEN, sizeof TOKEN))
-        return told(c, fmi2Error, "deSerializeFMUstate", "the state is not one of this FMU");
+        return failed(c, fmi2Error, "deSerializeFMUstate", "the state is not one of this FMU");
     saved_state *s = malloc(sizeof *s);
-    if (!s) return told(c, fmi2Error, "deSerializeFMUstate", "there is too little memory");
+    if (!s) return failed(c, fmi2Error, "deSerializeFMUstate", "there is too little memory");
     memcpy(s, bytes, size);
     *state = s;
     return fmi2OK;
@@ -190,7 +190,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
                                         size_t n_known, const fmi2Real change[], fmi2Real found[]) {
-    return told(c, fmi2Error, "getDirectionalDerivative", "the FMU does not provide it");
+    return failed(c, fmi2Error, "getDirectionalDerivative", "the FMU does not provide it");
 }
 
 /* model exchange */
@@ -227,20 +227,20 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
     instance *i = c;
-    if (n != N_STATES) return told(i, fmi2Error, "setContinuousStates", "the number of states is wrong");
+    if (n != N_STATES) return failed(i, fmi2Error, "setContinuousStates", "the number of states is wrong");
     for (size_t k = 0; k < n; k++) i->x[states[k]] = x[k];
     forget(i);
     return fmi2OK;
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    if (n != N_STATES) return told(c, fmi2Error, "getContinuousStates", "the number of states is wrong");
+    if (n != N_STATES) return failed(c, fmi2Error, "getContinuousStates", "the number of states is wrong");
     for (size_t k = 0; k < n; k++) x[k] = ((instance *)c)->x[states[k]];
     return fmi2OK;
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    if (n != N_STATES) return told(c, fmi2Error, "getNominalsOfContinuousStates", "the number of states is wrong");
+    if (n != N_STATES) return failed(c, fmi2Error, "getNominalsOfContinuousStates", "the number of states is wrong");
     for (size_t k = 0; k < n; k++) x[k] = nominal_x[states[k]];
     return fmi2OK;
 }
@@ -249,13 +249,13 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t n) {
     instance *i = c;
     const char *why = compute_rates(i);
     if (why) return discarded(i, "accelerations", why);
-    if (n != N_STATES) return told(i, fmi2Error, "getDerivatives", "the number of states is wrong");
+    if (n != N_STATES) return failed(i, fmi2Error, "getDerivatives", "the number of states is wrong");
     for (size_t k = 0; k < n; k++) dx[k] = i->dx[states[k]];
     return fmi2OK;
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real values[], size_t n) {
-    if (n != N_EVENTS) return told(c, fmi2Error, "getEventIndicators", "the number of event indicators is wrong");
+    if (n != N_EVENTS) return failed(c, fmi2Error, "getEventIndicators", "the number of event indicators is wrong");
     compute_event_functions(c, values);
     return fmi2OK;
 }
@@ -264,21 +264,21 @@ fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real values[], size_t n) 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_set) {
     instance *i = c;
     double end = t + h, margin = SAME_TIME * fmax(fabs(i->t), h);
-    if (!(h >= 0)) return told(i, fmi2Error, "doStep", "the step is negative");
-    if (fabs(t - i->t) > margin) return told(i, fmi2Error, "doStep", "a step does not begin where the last one ended");
-    if (OF_TIME && end > STOP_TIME + margin) return told(i, fmi2Error, "doStep", "the formulas of time were prepared up to the stop time of the scene");
+    if (!(h >= 0)) return failed(i, fmi2Error, "doStep", "the step is negative");
+    if (fabs(t - i->t) > margin) return failed(i, fmi2Error, "doStep", "a step does not begin where the last one ended");
+    if (OF_TIME && end > STOP_TIME + margin) return failed(i, fmi2Error, "doStep", "the formulas of time were prepared up to the stop time of the scene");
     const char *why = advance(i, end);
-    return why ? told(i, fmi2Discard, "doStep", why) : fmi2OK;
+    return why ? failed(i, fmi2Discard, "doStep", why) : fmi2OK;
 }
 
-fmi2Status fmi2CancelStep(fmi2Component c) { return told(c, fmi2Error, "cancelStep", "steps are not asynchronous"); }
+fmi2Status fmi2CancelStep(fmi2Component c) { return failed(c, fmi2Error, "cancelStep", "steps are not asynchronous"); }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer order[], const fmi2Real value[]) {
-    return n ? told(c, fmi2Error, "setRealInputDerivatives", "inputs are constant over a step") : fmi2OK;
+    return n ? failed(c, fmi2Error, "setRealInputDerivatives", "inputs are constant over a step") : fmi2OK;
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer order[], fmi2Real value[]) {
-    return n ? told(c, fmi2Error, "getRealOutputDerivatives", "the FMU does not provide them") : fmi2OK;
+    return n ? failed(c, fmi2Error, "getRealOutputDerivatives", "the FMU does not provide them") : fmi2OK;
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) { return fmi2Discard; }
