@@ -152,6 +152,9 @@ def _prepared(
     def local_errors(steps: np.ndarray, rates: np.ndarray) -> np.ndarray:
         return transport.apart(of_points[steps], points.sizes[steps], rates)
 
+    def by_one_stage(ends: np.ndarray) -> np.ndarray:
+        return transport.apart(of_points[:, -1:], points.sizes, ends[:, None] / points.sizes[:, None, None])
+
     def nonlinear(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the defects of some steps by nonlinear equations, and a mask of those that are known; refuse singular poses."""
         rows = np.append(len(points.t) * np.arange(3) // 3, points.rows[steps].ravel())  # others show usual poses
@@ -161,7 +164,7 @@ def _prepared(
         at_event = bool(piece.fired) & (steps == len(defects) - 1)  # the last rates may be those after it
         return found, known & ~at_event
 
-    means = _with_large_errors(points, defects, local_errors, nonlinear, at)
+    means = _with_large_errors(points, defects, local_errors, by_one_stage, nonlinear, at)
     of_rows = defects if piece.points > 1 else defects[:, -1:]
     at_rows = np.vstack([np.zeros_like(defects[0, :1]), of_rows.reshape(-1, defects.shape[2])])
     return _Prepared(piece, states, of_points, means, at_rows)
@@ -215,6 +218,7 @@ def _with_large_errors(
     points: Points,
     defects: np.ndarray,
     local_errors: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    by_one_stage: Callable[[np.ndarray], np.ndarray],
     nonlinear: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
     at: Motion,
 ) -> np.ndarray:
@@ -241,7 +245,7 @@ def _with_large_errors(
         missed &= not_smooth(rates, sizes, local)[0]
     found, before = defects.copy(), of_steps(local)
     if dominant(before).any():  # with defects of stiff forces, which a step balances
-        before = of_steps(local_errors(np.arange(len(sizes)), defects))
+        before = of_steps(by_one_stage(local[:, -1]))
     steps = np.flatnonzero(missed | dominant(before))
     if len(steps):
         exact, converged = nonlinear(steps)

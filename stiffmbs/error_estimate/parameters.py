@@ -34,7 +34,7 @@ class EstimateParameters:
     """Accepted states on the polynomial that gives the states within a step of bdf."""
     uneven: float = 10.0
     """Ratio of the steps on that polynomial above which the ends of the step give them."""
-    converged: float = 1e-6
+    converged: float = 1e-4
     """Last correction of an iteration for the change of an error over a step, relative to this change."""
     smooth: float = 0.1
     """Error of the quadrature over a step of radau, relative to the largest local error, above which it is adaptive."""
