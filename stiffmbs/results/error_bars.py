@@ -13,7 +13,7 @@ proportional to the product.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -140,11 +140,12 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.
     tops = [slope**2 / (-4 * bend), *(_continued(times, values, piece, *side).ravel() for side in sides)]
     row = np.concatenate([row, *2 * [np.repeat(np.arange(count), len(last))]])
     k, top = np.concatenate([k, np.tile(last, count), np.tile(last + 1, count)]), np.concatenate(tops)
+    reached = values[row, k] - highest[row]
+    row, k, top, reached = (each[reached + SAFETY * top > 0.0] for each in (row, k, top, reached))
     here = values[row, k]
     around = [np.clip(k + offset, 0, len(times) - 1) for offset in (-2, -1, 1, 2)]
     lowest = np.nanmin([np.where(piece[n] == piece[k], values[row, n], here) for n in around], axis=0)
     top = np.minimum(top, here - lowest)  # limit at jumps
-    reached = here - highest[row]
     found = np.maximum(FINER * (np.nanmax(values, axis=1) - highest), 0.0)
     np.fmax.at(found, row, np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top)
     return found
@@ -162,57 +163,71 @@ def _continued(
 
 @dataclass(frozen=True, eq=False)
 class ChannelErrors:
-    """Errors of all channels by one mechanism, by name.
+    """Errors of all channels by one mechanism.
 
-    `t`, `values`: nodes of the mechanism, s, and the values of the channels there. `errors`: those at the output times.
-    `restarts`: s.
+    `names` of the channels. `t`, `values`: nodes of the mechanism, s, and the values of the channels there, shape (channels, n).
+    `errors`: function for those at some of the output times, shape (channels, n). `restarts`: s.
     """
 
+    names: Sequence[str]
     t: np.ndarray
-    values: dict[str, np.ndarray]
-    errors: dict[str, np.ndarray]
+    values: np.ndarray
+    errors: Callable[[slice], np.ndarray]
     restarts: np.ndarray
 
 
 def bars(
     times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors], numbers_at_once: int
 ) -> dict[str, ErrorBar]:
-    """Return the error bars of the channels of a run from the errors along its mechanisms, one after the other in `parts`.
+    """Return the error bars of the channels of a run from the errors along its mechanisms.
 
     `numbers_at_once`: numbers in the values of the channels that are examined together.
     """
-    shown = {name: values for name, values in channels.items() if not name.startswith("constraint.")}
-    sampled = _between_outputs(times, shown, parts, numbers_at_once)
+    names = parts[0].names
+    sampled = _between_outputs(times, channels, parts, numbers_at_once)
+    ends = np.array([_ends(channels[name]) for name in names])
+    over_time, at_ends = np.zeros(len(names)), np.full(ends.shape, np.nan)
+    rows = max(1, numbers_at_once // len(names))
+    for first in range(0, len(times), rows):
+        block = slice(first, min(first + rows, len(times)))
+        errors = np.abs(np.sum([part.errors(block) for part in parts], axis=0))
+        over_time = np.fmax(over_time, np.fmax.reduce(errors, axis=1, initial=0.0))
+        row, end = np.nonzero((ends >= block.start) & (ends < block.stop))
+        at_ends[row, end] = errors[row, ends[row, end] - first]
     found = {}
-    for name, values in shown.items():
-        error = np.sum([part.errors[name] for part in parts], axis=0)
-        over_time = float(np.nanmax(np.abs(error), initial=0.0))
+    for name, error, own, at in zip(names, over_time.tolist(), at_ends.tolist(), ends, strict=True):
         if name not in sampled:
-            found[name] = ErrorBar(over_time, *4 * [np.nan])
+            found[name] = ErrorBar(error, *4 * [np.nan])
             continue
-        ends = int(np.nanargmin(values)), int(np.nanargmax(values))
-        own = [max(abs(float(error[end])), ROUNDING * abs(float(values[end]))) for end in ends]
-        least, greatest = sampled[name]
-        found[name] = ErrorBar(over_time, own[0] + least, own[1] + greatest, least, greatest)
+        rounding = (ROUNDING * np.abs(channels[name][at])).tolist()
+        widths = (max(*pair) + excess for *pair, excess in zip(own, rounding, sampled[name], strict=True))
+        found[name] = ErrorBar(error, *widths, *sampled[name])
     return found
+
+
+def _ends(values: np.ndarray) -> tuple[int, int]:
+    """Return the indices of the least and the greatest value of a channel, -1 if it has none."""
+    if np.isnan(values).all():
+        return -1, -1
+    return int(np.nanargmin(values)), int(np.nanargmax(values))
 
 
 def _between_outputs(
     times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors], numbers_at_once: int
 ) -> dict[str, tuple[float, float]]:
     """Return by how much each channel falls below its least value, and exceeds its greatest one, between output times."""
-    own: list[list[str]] = [[] for _ in parts]  # the channels of each mechanism
-    for name, values in channels.items():
-        if not np.isnan(values).all():
-            sizes = [float(np.ptp(part.values[name])) for part in parts]
-            own[sizes.index(max(sizes))].append(name)
+    names = parts[0].names
+    owners = np.argmax([np.ptp(part.values, axis=1) for part in parts], axis=0)  # the mechanism of each channel
+    known = np.array([not np.isnan(channels[name]).all() for name in names])
     found: dict[str, tuple[float, float]] = {}
-    for part, names in zip(parts, own, strict=True):
+    for number, part in enumerate(parts):
+        own = np.flatnonzero(known & (owners == number))
         t = np.sort(np.concatenate([times, part.t]))
         t = t[np.diff(t, prepend=-np.inf) > 0.0]
         at = np.searchsorted(t, times)
-        rows = ((np.interp(t, part.t, part.values[name]), channels[name]) for name in names)
-        found |= dict(zip(names, _both_ends(t, rows, at, part.restarts, numbers_at_once), strict=True))
+        rows = ((np.interp(t, part.t, part.values[k]), channels[names[k]]) for k in own)
+        ends = _both_ends(t, rows, at, part.restarts, numbers_at_once)
+        found |= {names[k]: each for k, each in zip(own, ends, strict=True)}
     return found
 
 
@@ -280,7 +295,12 @@ def _larger_neighbour(values: np.ndarray) -> np.ndarray:
 
 def difference(name: str, values: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return the difference of a channel in two runs; that of an angle is the one of the least turn."""
-    error = values - others
-    if kind_of(name) == "angle":
-        error = error - 2.0 * np.pi * np.round(error / (2.0 * np.pi))
-    return error
+    return differences([name], values[None], others[None])[0]
+
+
+def differences(names: Sequence[str], values: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return the differences of channels in two runs, shape (channels, n); as in `difference`."""
+    errors = values - others
+    angles = [k for k, name in enumerate(names) if kind_of(name) == "angle"]
+    errors[angles] -= 2.0 * np.pi * np.round(errors[angles] / (2.0 * np.pi))
+    return errors
