@@ -26,12 +26,13 @@ if TYPE_CHECKING:
     from .elimination.eliminated import Eliminated
 
 T = TypeVar("T")
-ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, OUTPUT_POINTS = together(
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, TRAILING_RATES, FACTOR_AND_SOLVE, OUTPUT_POINTS = together(
     "stiffmbs.dynamics.native.dynamics",
     SHORT,
     assemble="int64(float64, float64, int64, int64*)",
     correct_velocities="int64(float64, int64*)",
     accelerate="int64(float64, float64*, int64*)",
+    trailing_rates="int64(int64, float64*, float64*, float64*, float64*, int64*)",
     factor_and_solve="int64(float64*, int64*)",
     output_points="int64(int64, float64*, float64*, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
@@ -293,6 +294,20 @@ class Dynamics:
         source, row = self._trailing
         if len(row):
             rates[row] = self.state.values["acceleration"][source]
+
+    def trailing_rates(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Return the rates of the coordinates after those of the bodies at many consistent states, shape (n, n_q - n_pose).
+
+        They are NaN from the first state on that has no accelerations.
+        """
+        _, row = self._trailing
+        rates = np.zeros((len(t), self.system.n_q))
+        if len(row):
+            found = np.full((len(t), len(row)), np.nan)
+            arrays = [np.ascontiguousarray(each, dtype=float) for each in (t, q, u)]
+            TRAILING_RATES.call(len(t), *addresses(*arrays, found), self._at)
+            rates[:, row] = found
+        return rates[:, self.system.n_pose :]
 
     def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
         """Return the output rows at given times and states, up to the first that has no solution.

@@ -191,13 +191,13 @@ def _with_inner(
     """
     system, steps, inner = dynamics.system, np.arange(len(recorded.sizes)), OF_BDF.stages - 1
     t, z = curve_of_bdf(recorded).at(np.tile(OF_BDF.nodes[:-1], (len(steps), 1)), steps)
-    q, u = (np.ascontiguousarray(each) for each in (z[:, : system.n_q], z[:, system.n_q :]))
-    before = np.full(len(steps), np.inf)
+    exact, unknowns = np.empty_like(z), np.empty((len(t), ends.shape[1]))
+    before, rows, balance = np.full(len(steps), np.inf), np.arange(len(t)), None
     while True:
-        balance = None if np.isinf(before).all() else (np.full(len(t), recorded.sizes.max()), rtol)
-        within = evaluated(dynamics, t, q, u, balance)
-        exact = np.hstack([within.q_rates, within.acceleration])
-        found, unknowns = recorded.with_inner(t, np.hstack([within.q, within.u]), exact), transport.rows(within)
+        within = evaluated(dynamics, t[rows], z[rows, : system.n_q], z[rows, system.n_q :], balance)
+        z[rows], exact[rows] = np.hstack([within.q, within.u]), np.hstack([within.q_rates, within.acceleration])
+        unknowns[rows] = transport.rows(within)
+        found = recorded.with_inner(t, z, exact)
         defects, motions = found.defects(False), found.changes(exact).reshape(len(steps), inner, -1)
         off, of_motion = (np.abs(each / found.typical).max(axis=(1, 2)) for each in (defects, motions))
         open_ = np.flatnonzero((off > ESTIMATE.large * of_motion) & (off < ESTIMATE.smooth * before))
@@ -206,12 +206,11 @@ def _with_inner(
         rows = (open_[:, None] * inner + np.arange(inner)).ravel()
         own = np.concatenate([unknowns.reshape(len(steps), inner, -1), ends[1:, None]], axis=1)
         moves = transport.apart(own[open_], found.sizes[open_], defects[open_])
-        q[rows], u[rows] = displaced(
-            system, within.q[rows], within.u[rows], -moves[:, :-1].reshape(len(rows), moves.shape[2])
-        )
+        of_inner = -moves[:, :-1].reshape(len(rows), moves.shape[2])
+        z[rows] = np.hstack(displaced(system, z[rows, : system.n_q], z[rows, system.n_q :], of_inner))
         at_ends = displaced(system, states.q[1 + open_], states.u[1 + open_], -moves[:, -1])
         ends[1 + open_] = transport.rows(evaluated(dynamics, recorded.t[1 + open_], *at_ends))
-        before = off
+        before, balance = off, (np.full(len(rows), recorded.sizes.max()), rtol)
 
 
 def _with_large_errors(

@@ -10,7 +10,7 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
 from ..solve.stiff_rows import with_stiff_forces
-from .coordinates import as_rows, pose_rates, with_rates
+from .coordinates import as_rows, pose_rates
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,14 +61,6 @@ def motion(system: System, at: Evaluated) -> np.ndarray:
 
 def _trailing_rates(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the rates of the coordinates after those of the bodies, shape (n, n_q - n_pose)."""
-    system, state = dynamics.system, dynamics.state
-    rates = np.zeros((len(t), system.n_q))
-    if not len(with_rates(system)):
-        return rates[:, system.n_pose :]
-    sampled = np.flatnonzero(system.sampled) + system.first_state
-    for k in range(len(t)):
-        state.q[:], state.u[:] = q[k], u[k]
-        dynamics.accelerate(float(t[k]))
-        dynamics.store_trailing_rates(rates[k])
-    rates[:, sampled] = 0.0
-    return rates[:, system.n_pose :]
+    rates = dynamics.trailing_rates(t, q, u)
+    rates[:, np.flatnonzero(dynamics.system.sampled) + dynamics.system.first_state - dynamics.system.n_pose] = 0.0
+    return rates

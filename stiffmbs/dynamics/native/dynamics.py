@@ -3,7 +3,7 @@
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, state_view
-from stiffmbs.compile.machine.native.evaluate import MOTION, OUTPUT, call_kernels, evaluate, share_turns
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, OUTPUT, call_kernels, evaluate, share_turns
 from stiffmbs.compile.machine.native.factors import DONE, equilibrate, factor, log_determinant, scale, solve
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import take_unit_length
@@ -44,6 +44,21 @@ def accelerate(t, acceleration, dynamics):
     for k in range(s.n_u):
         acceleration[k] = factors_view(m.acceleration_factors).b[k]
     return status
+
+
+def trailing_rates(count, times, q, u, rates, dynamics):
+    """Compute the rates of `m.trailing_row` at many consistent states, shape (count, n_trailing); return the number of completed rows."""
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    values = floats(s.values[ACCELERATION])
+    for row in range(count):
+        copied(s.q, shifted(q, row * s.n_q), s.n_q)
+        copied(s.u, shifted(u, row * s.n_u), s.n_u)
+        if to_accelerations(s, m, times[row]) < 0:
+            return row
+        for k in range(m.n_trailing):
+            rates[row * m.n_trailing + k] = values[m.trailing_source[k]]
+    return count
 
 
 def factor_and_solve(b, factors):
