@@ -14,7 +14,7 @@ from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import closed
 from .coordinates import displaced, displacements, width, with_rates
-from .defects import Points, curve_of_bdf, nonlinear_defects, woven
+from .defects import Points, curve_of_bdf, nodes_of_bdf, nonlinear_defects, woven
 from .evaluated import Evaluated, evaluated, motion
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .parameters import ESTIMATE
@@ -71,15 +71,19 @@ class _Prepared:
     @property
     def sizes(self) -> np.ndarray:
         """Lengths of the steps, s."""
-        return np.diff(self.piece.t[:: self.piece.points])
+        return np.diff(self.states.t[:: self.piece.points])
 
 
 def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> StateErrors:
     """Return the errors of the states of a run with a tolerance; raise a SolverError if a state has no solution."""
-    starts = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
-    states = evaluated(dynamics, t, q, u, (steps, rtol))
+    recorded = evaluated(dynamics, t, q, u, (steps, rtol))
+    begins = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
+    nodes = [nodes_of_bdf(piece.t) if piece.points == 1 else np.arange(len(piece.t)) for piece in pieces]
+    rows = np.concatenate([first + each for first, each in zip(begins, nodes, strict=False)])
+    starts = np.append(0, np.cumsum([len(each) for each in nodes]))
+    t, q, u, states = t[rows], q[rows], u[rows], recorded.at(rows)
     fired = np.array([bool(piece.fired) for piece in pieces])
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
@@ -93,9 +97,11 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     prepared: list[_Prepared] = []
     of_pieces: list[tuple[np.ndarray, np.ndarray]] = []  # errors and their rates
     error, shift = np.zeros(width(dynamics.system)), 0.0
-    for k, (piece, first) in enumerate(zip(pieces, starts, strict=False)):
+    for k, piece in enumerate(pieces):
         opened = k > 0 and bool(pieces[k - 1].fired)
-        each = _prepared(dynamics, transport, piece, states.at(slice(first, first + len(piece.t))), opened, rtol)
+        each = _prepared(
+            dynamics, transport, piece, recorded.at(slice(begins[k], begins[k + 1])), nodes[k], opened, rtol
+        )
         if k:
             error, shift = _restarted(dynamics, prepared[-1], each, error, shift)
         errors, slopes = _transported(transport, each, error)
@@ -117,7 +123,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         after = np.arange(starts[k + 1] + 1, starts[min(k + 2, len(pieces))])
         for rows in (before[::-1], after):
             left_out[beyond_event(dynamics, pieces[k].fired, rows, t, (q, u), (q_better, u_better))] = True
-    fast = excited_at_start(dynamics, states.at(slice(len(pieces[0].t))), pieces[0].points)
+    fast = excited_at_start(dynamics, states.at(slice(starts[1])), pieces[0].points)
     return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out, lost, restarts, fast)
 
 
@@ -134,18 +140,21 @@ def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def _prepared(
-    dynamics: Dynamics, transport: Transport, piece: Piece, states: Evaluated, opened: bool, rtol: float
-) -> _Prepared:
-    recorded, unknowns = Points.of(dynamics.system, piece.points, states), transport.rows(states)
-    step = float(recorded.sizes.max())
+    dynamics: Dynamics, transport: Transport, piece: Piece, recorded: Evaluated, nodes: np.ndarray, opened: bool, rtol: float
+) -> _Prepared:  # fmt: skip
+    system, states = dynamics.system, recorded.at(nodes)
+    points, unknowns = Points.of(system, piece.points, states), transport.rows(states)
+    step = float(np.diff(recorded.t[:: piece.points]).max())
 
     def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), step), rtol)))
 
-    points = recorded
     if piece.points == 1:
-        ends = unknowns[_away_from_events(piece, opened)]
-        points, unknowns = _with_inner(dynamics, transport, recorded, states, ends, rtol)
+        curve, ends = (
+            curve_of_bdf(Points.of(system, 1, recorded), nodes),
+            unknowns[_away_from_events(states.t, piece, opened)],
+        )
+        points, unknowns = _with_inner(dynamics, transport, points, curve, states, ends, (step, rtol))
     defects = points.defects(bool(piece.fired))
     of_points = unknowns[1:].reshape(*defects.shape[:2], -1)
 
@@ -170,9 +179,8 @@ def _prepared(
     return _Prepared(piece, states, of_points, means, at_rows)
 
 
-def _away_from_events(piece: Piece, opened: bool) -> np.ndarray:
-    """Return the rows at whose states to linearise: near an event, where displacements cross it, the nearest further away."""
-    t = piece.t
+def _away_from_events(t: np.ndarray, piece: Piece, opened: bool) -> np.ndarray:
+    """Return the nodes at whose states to linearise: near an event, where displacements cross it, the nearest further away."""
     near = ESTIMATE.beside * (t[-1] - t[0])
     first = int(np.searchsorted(t, t[0] + near)) if opened else 0
     last = int(np.searchsorted(t, t[-1] - near, side="right")) - 1 if piece.fired else len(t) - 1
@@ -180,24 +188,25 @@ def _away_from_events(piece: Piece, opened: bool) -> np.ndarray:
 
 
 def _with_inner(
-    dynamics: Dynamics, transport: Transport, recorded: Points, states: Evaluated, ends: np.ndarray, rtol: float
-) -> tuple[Points, np.ndarray]:
+    dynamics: Dynamics, transport: Transport, at_nodes: Points, curve: Curve, states: Evaluated, ends: np.ndarray,
+    balance: tuple[float, float],
+) -> tuple[Points, np.ndarray]:  # fmt: skip
     """Return the points of the steps of bdf, of which those within are on a curve through recorded states, and their unknowns.
 
-    `states`, `ends`: recorded states, and rows of unknowns to linearise at.
+    `states`, `ends`: those at the nodes, and rows of unknowns to linearise at. `balance`: as in `evaluated`, of all states.
 
     A curve stretches a stiff spring by its own error: 1e-8 m are 100 kN at 1e13 N/m. Where its defects are a large part of the
     motion, the points within a step become those of its collocation, by Newton's iteration.
     """
-    system, steps, inner = dynamics.system, np.arange(len(recorded.sizes)), OF_BDF.stages - 1
-    t, z = curve_of_bdf(recorded).at(np.tile(OF_BDF.nodes[:-1], (len(steps), 1)), steps)
+    system, steps, inner = dynamics.system, np.arange(len(at_nodes.sizes)), OF_BDF.stages - 1
+    t, z = curve.at(np.tile(OF_BDF.nodes[:-1], (len(steps), 1)), steps)
     exact, unknowns = np.empty_like(z), np.empty((len(t), ends.shape[1]))
-    before, rows, balance = np.full(len(steps), np.inf), np.arange(len(t)), None
+    before, rows, balanced = np.full(len(steps), np.inf), np.arange(len(t)), None
     while True:
-        within = evaluated(dynamics, t[rows], z[rows, : system.n_q], z[rows, system.n_q :], balance)
+        within = evaluated(dynamics, t[rows], z[rows, : system.n_q], z[rows, system.n_q :], balanced)
         z[rows], exact[rows] = np.hstack([within.q, within.u]), np.hstack([within.q_rates, within.acceleration])
         unknowns[rows] = transport.rows(within)
-        found = recorded.with_inner(t, z, exact)
+        found = at_nodes.with_inner(t, z, exact)
         defects, motions = found.defects(False), found.changes(exact).reshape(len(steps), inner, -1)
         off, of_motion = (np.abs(each / found.typical).max(axis=(1, 2)) for each in (defects, motions))
         open_ = np.flatnonzero((off > ESTIMATE.large * of_motion) & (off < ESTIMATE.smooth * before))
@@ -209,8 +218,8 @@ def _with_inner(
         of_inner = -moves[:, :-1].reshape(len(rows), moves.shape[2])
         z[rows] = np.hstack(displaced(system, z[rows, : system.n_q], z[rows, system.n_q :], of_inner))
         at_ends = displaced(system, states.q[1 + open_], states.u[1 + open_], -moves[:, -1])
-        ends[1 + open_] = transport.rows(evaluated(dynamics, recorded.t[1 + open_], *at_ends))
-        before, balance = off, (np.full(len(rows), recorded.sizes.max()), rtol)
+        ends[1 + open_] = transport.rows(evaluated(dynamics, at_nodes.t[1 + open_], *at_ends))
+        before, balanced = off, (np.full(len(rows), balance[0]), balance[1])
 
 
 def _with_large_errors(

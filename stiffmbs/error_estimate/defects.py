@@ -99,35 +99,44 @@ def woven(ends: np.ndarray, within: np.ndarray) -> np.ndarray:
     return np.concatenate([ends[:1], found])
 
 
-def _windows(h: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first row of the polynomial of each step, and a mask of the steps that have none with even steps.
+def nodes_of_bdf(t: np.ndarray) -> np.ndarray:
+    """Return the rows of recorded steps between which errors are transported: two steps of equal length are one."""
+    sizes = np.diff(t)
+    rows = np.arange(len(sizes))
+    changes = np.append(True, ~np.isclose(sizes[1:], sizes[:-1], atol=0.0))
+    in_run = rows - np.maximum.accumulate(np.where(changes, rows, 0))
+    is_first = (in_run % 2 == 0) & ~np.append(changes[1:], True)
+    return np.append(0, 1 + rows[~is_first])
+
+
+def _windows(t: np.ndarray, begin: np.ndarray, end: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first row of the polynomial from row `begin` to row `end` of each step, and a mask of those without even steps.
 
     The step is in the middle of its polynomial if the steps there are even, otherwise as near to it as possible.
     """
-    steps = len(h)
-    ends = np.arange(1, steps + 1)
+    h = np.diff(t)
     middle = (points - 2) // 2
-    first, uneven = np.clip(ends - 1 - middle, 0, steps + 1 - points), np.ones(steps, dtype=bool)
+    last = len(t) - points
+    first, uneven = np.clip(begin - middle, 0, last), np.ones(len(begin), dtype=bool)
     for before in sorted(range(points - 1), key=lambda before: abs(before - middle)):
-        start = np.clip(ends - 1 - before, 0, steps + 1 - points)
+        start = np.clip(begin - before, 0, last)
         sizes = h[start[:, None] + np.arange(points - 1)]
-        even = uneven & (sizes.max(axis=1) <= ESTIMATE.uneven * sizes.min(axis=1))
-        first[even], uneven[even] = start[even], False
+        holds = (start + points > end) & (sizes.max(axis=1) <= ESTIMATE.uneven * sizes.min(axis=1))
+        first[uneven & holds], uneven[uneven & holds] = start[uneven & holds], False
     return first, uneven
 
 
-def curve_of_bdf(of: Points) -> Curve:
-    """Return the curve through the neighbouring states of each step, or by its two ends where steps change a lot."""
-    t, sizes, steps = of.t, of.sizes, np.arange(len(of.sizes))
-    ends = steps[:, None] + np.arange(2)
+def curve_of_bdf(of: Points, nodes: np.ndarray) -> Curve:
+    """Return the curve between nodes through the neighbouring states, or by those at its two ends where steps change a lot."""
+    t, ends = of.t, np.column_stack([nodes[:-1], nodes[1:]])
     curve = Curve.of_ends(t[ends], of.states[ends], of.exact[ends])
     if len(t) < ESTIMATE.points:
         return curve
-    first, uneven = _windows(sizes, ESTIMATE.points)
+    first, uneven = _windows(t, *ends.T, ESTIMATE.points)
     window = first[~uneven, None] + np.arange(ESTIMATE.points)
     even = Curve.through(t[window], of.states[window], *t[ends[~uneven]].T)
     ours, theirs = curve.coefficients.shape[1], even.coefficients.shape[1]
-    coefficients = np.zeros((len(steps), max(ours, theirs), of.states.shape[1]))
+    coefficients = np.zeros((len(ends), max(ours, theirs), of.states.shape[1]))
     coefficients[uneven, :ours], coefficients[~uneven, :theirs] = curve.coefficients[uneven], even.coefficients
     return replace(curve, coefficients=coefficients)
 
