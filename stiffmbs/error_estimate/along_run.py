@@ -149,13 +149,15 @@ def _prepared(
     def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), step), rtol)))
 
+    smooth = np.zeros(len(states.t) - 1, dtype=bool)  # steps of bdf with an accurate slope
     if piece.points == 1:
-        curve, ends = (
-            curve_of_bdf(Points.of(system, 1, recorded), nodes),
-            unknowns[_away_from_events(states.t, piece, opened)],
-        )
+        curve, smooth = curve_of_bdf(Points.of(system, 1, recorded), nodes)
+        ends = unknowns[_away_from_events(states.t, piece, opened)]
         points, unknowns = _with_inner(dynamics, transport, points, curve, states, ends, (step, rtol))
+        smooth[-1] &= not piece.fired
     defects = points.defects(bool(piece.fired))
+    if smooth.any():
+        defects[smooth] += points.changes_of(curve.errors_of_slopes(OF_BDF))[smooth]
     of_points = unknowns[1:].reshape(*defects.shape[:2], -1)
 
     def local_errors(steps: np.ndarray, rates: np.ndarray) -> np.ndarray:

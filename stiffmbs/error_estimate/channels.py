@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import permutations
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors
 from .coordinates import as_rows, displaced
+from .parameters import ESTIMATE
 from .vibrations import FastMotions
 
 Channels = dict[str, np.ndarray]
@@ -81,10 +83,31 @@ class _Nodes:
     errors: np.ndarray
     neighbours: np.ndarray
 
-    def line(self, t: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-        """Return the errors of states at some times, each on the straight line through those at two nodes."""
-        part = np.minimum((t - self.t[first]) / (self.t[last] - self.t[first]), 1.0)[:, None]
-        return self.of_states[first] + part * (self.of_states[last] - self.of_states[first])
+    def interpolated(self, t: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+        """Return the errors of states at some times by those at the two nodes next to each, and at two more where steps are even."""
+        t = np.clip(t, self.t[0], self.t[-1])
+        rows = np.column_stack([before - 1, before, after, after + 1])
+        cubic = (rows[:, 0] >= 0) & (rows[:, 3] < len(self.t))
+        inside = rows[cubic]
+        sizes = np.diff(self.t[inside], axis=1)
+        even = sizes.max(axis=1) <= ESTIMATE.uneven * sizes.min(axis=1)
+        cubic[cubic] = even & (self.pieces[inside[:, 0]] == self.pieces[inside[:, 3]])
+        found = np.empty((len(t), self.of_states.shape[1]))
+        for chosen, of in ((cubic, rows), (~cubic, rows[:, 1:3])):
+            found[chosen] = self._through(t[chosen], of[chosen])
+        return found
+
+    def _through(self, t: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the errors of states at times, each by the polynomial through those at some nodes, shape (n, k)."""
+        nodes, weights = self.t[rows], np.ones(rows.shape)
+        for i, j in permutations(range(rows.shape[1]), 2):
+            weights[:, i] *= (t - nodes[:, j]) / (nodes[:, i] - nodes[:, j])
+        return np.asarray(np.einsum("nk,nkf->nf", weights, self.of_states[rows]))
+
+    @cached_property
+    def pieces(self) -> np.ndarray:
+        """Numbers of the pieces of the run without nodes left out to which the nodes belong."""
+        return np.append(0, np.cumsum(~self.neighbours))
 
 
 def channel_errors(
@@ -115,7 +138,9 @@ def channel_errors(
     at, without = (of.at(kept) for of in rows)
     of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
     errors, neighbours = differences(names, values, better), np.diff(np.flatnonzero(kept)) == 1
-    of_outputs = _AtOutputs(reports, _Nodes(at.t, at.q, at.u, of_states, values, errors, neighbours), channels).errors
+    of_outputs: OfOutputs = _AtOutputs(
+        reports, _Nodes(at.t, at.q, at.u, of_states, values, errors, neighbours), channels
+    ).errors
     if found.fast:
         system = subsystem.dynamics.system if subsystem else dynamics.system
         at_start = found.q[:1], found.u[:1]
@@ -175,7 +200,7 @@ class _AtOutputs:
         first = np.clip(np.searchsorted(nodes.t, t, side="right") - 1, 0, len(nodes.t) - 2)
         values = self.reports.stacked(self.channels, block)
         try:
-            direct = self.reports.errors(values, t, run.q[block], run.u[block], nodes.line(t, first, first + 1))
+            direct = self.reports.errors(values, t, run.q[block], run.u[block], nodes.interpolated(t, first, first + 1))
         except SolverError:
             return line
         return np.where(self._hold[:, first] | (np.abs(direct) < np.abs(line)), direct, line)
@@ -187,7 +212,7 @@ class _AtOutputs:
         if len(nodes.t) < 3:
             return None
         inner = np.arange(1, len(nodes.t) - 1)
-        of_states = nodes.line(nodes.t[inner], inner - 1, inner + 1)
+        of_states = nodes.interpolated(nodes.t[inner], inner - 1, inner + 1)
         try:
             alone = self.reports.errors(
                 nodes.values[:, inner], nodes.t[inner], nodes.q[inner], nodes.u[inner], of_states

@@ -1,9 +1,10 @@
 """Defects of the recorded states: their errors as those of the collocation equations over each step.
 
 At the points z_i of a step of length h, from z_0, these are d_i = sum_j D_ij (z_j - z_0) / h - F(z_i), the residual of a Radau method.
-As in Newton's iteration, the error does not depend on the points within a step to first order. Of the second order is a remainder that
-stretches stiff springs. Where errors x of steps are large, they are solutions of the nonlinear equations
-d_i = sum_j D_ij x_j / h - (F(z_i) - F(z_i - x_i)).
+Those of bdf are on a smooth curve z(t) through neighbouring states: then d_i = z'(t_i) - F(z_i), without the error of the stage order in
+the derivative, which stretches stiff springs. As in Newton's iteration, the error does not depend on the
+points within a step to first order; a remainder of the second order stretches stiff springs, too. Where errors x of steps are large,
+they are solutions of the nonlinear equations d_i = sum_j D_ij x_j / h - (F(z_i) - F(z_i - x_i)).
 """
 
 from __future__ import annotations
@@ -100,13 +101,12 @@ def woven(ends: np.ndarray, within: np.ndarray) -> np.ndarray:
 
 
 def nodes_of_bdf(t: np.ndarray) -> np.ndarray:
-    """Return the rows of recorded steps between which errors are transported: two steps of equal length are one."""
-    sizes = np.diff(t)
-    rows = np.arange(len(sizes))
-    changes = np.append(True, ~np.isclose(sizes[1:], sizes[:-1], atol=0.0))
-    in_run = rows - np.maximum.accumulate(np.where(changes, rows, 0))
-    is_first = (in_run % 2 == 0) & ~np.append(changes[1:], True)
-    return np.append(0, 1 + rows[~is_first])
+    """Return the rows of recorded steps between which errors are transported: pairs of equal steps are one step."""
+    sizes, rows = np.diff(t), np.arange(len(t) - 1)
+    equals_next = np.append(np.isclose(sizes[1:], sizes[:-1], atol=0.0), False)
+    first = np.append(True, ~equals_next[:-1])
+    number = rows - np.maximum.accumulate(np.where(first, rows, 0))  # of a step among equal ones
+    return np.append(0, 1 + rows[~equals_next | (number % 2 == 1)])
 
 
 def _windows(t: np.ndarray, begin: np.ndarray, end: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -126,19 +126,22 @@ def _windows(t: np.ndarray, begin: np.ndarray, end: np.ndarray, points: int) -> 
     return first, uneven
 
 
-def curve_of_bdf(of: Points, nodes: np.ndarray) -> Curve:
-    """Return the curve between nodes through the neighbouring states, or by those at its two ends where steps change a lot."""
+def curve_of_bdf(of: Points, nodes: np.ndarray) -> tuple[Curve, np.ndarray]:
+    """Return the curve between nodes, and a mask of steps where it is through the neighbouring states.
+
+    The others, whose neighbours have far longer or shorter steps, have a curve by their two ends.
+    """
     t, ends = of.t, np.column_stack([nodes[:-1], nodes[1:]])
     curve = Curve.of_ends(t[ends], of.states[ends], of.exact[ends])
     if len(t) < ESTIMATE.points:
-        return curve
-    first, uneven = _windows(t, *ends.T, ESTIMATE.points)
+        return curve, np.zeros(len(ends), dtype=bool)
+    first, uneven = _windows(t, ends[:, 0], ends[:, 1], ESTIMATE.points)
     window = first[~uneven, None] + np.arange(ESTIMATE.points)
     even = Curve.through(t[window], of.states[window], *t[ends[~uneven]].T)
     ours, theirs = curve.coefficients.shape[1], even.coefficients.shape[1]
     coefficients = np.zeros((len(ends), max(ours, theirs), of.states.shape[1]))
     coefficients[uneven, :ours], coefficients[~uneven, :theirs] = curve.coefficients[uneven], even.coefficients
-    return replace(curve, coefficients=coefficients)
+    return replace(curve, coefficients=coefficients), ~uneven
 
 
 def nonlinear_defects(

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legval, legvander
 
-from ..solve.radau.collocation import radau
+from ..solve.radau.collocation import Collocation, radau
 from .parameters import ESTIMATE
 
 GAUSS_NODES, GAUSS_WEIGHTS = (0.5 * (leggauss(3)[0] + 1.0), 0.5 * leggauss(3)[1])
@@ -55,6 +55,13 @@ class Curve:
         t = self.start[of_step, None] + self.size[of_step, None] * places
         weights = legvander(2.0 * places - 1.0, self.coefficients.shape[1] - 1)
         return t.ravel(), np.einsum("nmk,nkj->nmj", weights, self.coefficients[of_step]).reshape(t.size, -1)
+
+    def errors_of_slopes(self, method: Collocation) -> np.ndarray:
+        """Return the errors of the slopes by collocation at its points of all steps, shape (steps, points, n), 1/s: z' - sum_j D_ij (z_j - z_0) / h."""
+        x, degree = 2.0 * np.append(0.0, method.nodes) - 1.0, self.coefficients.shape[1] - 1
+        values = legvander(x, degree) @ self.coefficients
+        slopes = legvander(x[1:], degree - 1) @ legder(self.coefficients, scl=2.0, axis=1)
+        return np.asarray((slopes - method.derivative @ (values[:, 1:] - values[:, :1])) / self.size[:, None, None])
 
 
 def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -200,8 +200,8 @@ def bars(
             found[name] = ErrorBar(error, *4 * [np.nan])
             continue
         rounding = (ROUNDING * np.abs(channels[name][at])).tolist()
-        widths = (max(*pair) + excess for *pair, excess in zip(own, rounding, sampled[name], strict=True))
-        found[name] = ErrorBar(error, *widths, *sampled[name])
+        least, greatest = (max(*pair) + excess for *pair, excess in zip(own, rounding, sampled[name], strict=True))
+        found[name] = ErrorBar(error, least, greatest, *sampled[name])
     return found
 
 
@@ -221,7 +221,7 @@ def _between_outputs(
     known = np.array([not np.isnan(channels[name]).all() for name in names])
     found: dict[str, tuple[float, float]] = {}
     for number, part in enumerate(parts):
-        own = np.flatnonzero(known & (owners == number))
+        own = np.flatnonzero(known & (owners == number)).tolist()
         t = np.sort(np.concatenate([times, part.t]))
         t = t[np.diff(t, prepend=-np.inf) > 0.0]
         at = np.searchsorted(t, times)

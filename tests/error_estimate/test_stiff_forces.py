@@ -27,7 +27,7 @@ def test_errors_of_poses_do_not_stretch_stiff_bushings(solver, bushing):
     assert found.estimate.status == "estimated"
     assert 0.8 < ratio(found, "a.angle", truth["a.angle"]) < 1.2
     for name in REACTIONS:
-        assert 1 / 4 < ratio(found, name, truth[name]) < 4
+        assert 1 / 2 < ratio(found, name, truth[name]) < 2
 
 
 @pytest.mark.long
@@ -95,7 +95,7 @@ def test_a_step_with_a_large_error_of_its_own_stretches_no_stiff_spring():
     found = stiffmbs.run(scene, solver="bdf", rtol=1e-5, errors=True)
     truth = stiffmbs.run(scene, solver="radau", rtol=1e-9, errors=False)
     for name in ("right_spring.fx", "left_spring.fz", "right_hinge.fy", "slider.az", "right.wdy"):
-        assert 0.5 < ratio(found, name, truth[name]) < 2.0, name
+        assert 0.8 < ratio(found, name, truth[name]) < 1.25, name
 
 
 AT_REST = """
