@@ -28,7 +28,7 @@ from ..tuning import tuned
 class StorageParameters:
     """Parameters of the memory of results; results do not depend on them. Source: tests/dynamics/test_storage.py."""
 
-    largest_in_memory: int = 2**26
+    largest_in_memory: int = 2**24
     """Size of the largest array held in memory, bytes."""
     block: int = 100_000
     """Number of rows that are written or read before memory is released."""

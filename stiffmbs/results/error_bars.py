@@ -13,12 +13,12 @@ proportional to the product.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 
 import numpy as np
 
+from ..dynamics.storage import release
 from .scales import ROUNDING, kind_of
 
 Fine = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -27,6 +27,10 @@ SAFETY = 2.0
 NO_RESTARTS = np.empty(0)
 FINER = 1.1
 """Factor on the excess at finer instants, as the finest show a little more."""
+NEIGHBOURS = 3
+"""Instants next to a peak that bound it."""
+ARRAYS = 8
+"""Arrays of the size of the values that the search of peaks holds."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,12 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.
     `times` of shape (n,), `values` of shape (channels, n); the result is of shape (channels,). `at`: indices of the reported
     instants. `restarts`: times from which on values belong to the motion after a jump or kink, s.
     """
-    highest, count = np.nanmax(values[:, at], axis=1), len(values)
+    return _excess(times, values, np.nanmax(values[:, at], axis=1), restarts)
+
+
+def _excess(times: np.ndarray, values: np.ndarray, highest: np.ndarray, restarts: np.ndarray) -> np.ndarray:
+    """Return the excess of `between` over the `highest` values at the reported instants, shape (channels,)."""
+    count = len(values)
     piece = np.searchsorted(restarts, times, side="right")
     ahead = values[:, 1:] >= values[:, :-1]
     peaks = ahead[:, :-1] & (values[:, 1:-1] >= values[:, 2:]) & (piece[:-2] == piece[2:])
@@ -146,7 +155,7 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.
     around = [np.clip(k + offset, 0, len(times) - 1) for offset in (-2, -1, 1, 2)]
     lowest = np.nanmin([np.where(piece[n] == piece[k], values[row, n], here) for n in around], axis=0)
     top = np.minimum(top, here - lowest)  # limit at jumps
-    found = np.maximum(FINER * (np.nanmax(values, axis=1) - highest), 0.0)
+    found = np.maximum(FINER * (np.fmax.reduce(values, axis=1, initial=-np.inf) - highest), 0.0)
     np.fmax.at(found, row, np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top)
     return found
 
@@ -183,70 +192,72 @@ def bars(
 
     `numbers_at_once`: numbers in the values of the channels that are examined together.
     """
-    names = parts[0].names
-    sampled = _between_outputs(times, channels, parts, numbers_at_once)
-    ends = np.array([_ends(channels[name]) for name in names])
-    over_time, at_ends = np.zeros(len(names)), np.full(ends.shape, np.nan)
-    rows = max(1, numbers_at_once // len(names))
+    names, rows = parts[0].names, max(1, numbers_at_once // (ARRAYS * len(parts[0].names)))
+    over_time, at_ends = np.zeros(len(names)), np.full((len(names), 2), np.nan)
+    ends, all_names = np.tile([np.inf, -np.inf], (len(names), 1)), np.arange(len(names))  # least and greatest values
     for first in range(0, len(times), rows):
         block = slice(first, min(first + rows, len(times)))
+        values = np.array([channels[name][block] for name in names])
         errors = np.abs(np.sum([part.errors(block) for part in parts], axis=0))
         over_time = np.fmax(over_time, np.fmax.reduce(errors, axis=1, initial=0.0))
-        row, end = np.nonzero((ends >= block.start) & (ends < block.stop))
-        at_ends[row, end] = errors[row, ends[row, end] - first]
-    found = {}
-    for name, error, own, at in zip(names, over_time.tolist(), at_ends.tolist(), ends, strict=True):
-        if name not in sampled:
-            found[name] = ErrorBar(error, *4 * [np.nan])
-            continue
-        rounding = (ROUNDING * np.abs(channels[name][at])).tolist()
-        least, greatest = (max(*pair) + excess for *pair, excess in zip(own, rounding, sampled[name], strict=True))
-        found[name] = ErrorBar(error, least, greatest, *sampled[name])
-    return found
-
-
-def _ends(values: np.ndarray) -> tuple[int, int]:
-    """Return the indices of the least and the greatest value of a channel, -1 if it has none."""
-    if np.isnan(values).all():
-        return -1, -1
-    return int(np.nanargmin(values)), int(np.nanargmax(values))
+        for end, sign in enumerate((1.0, -1.0)):
+            at = np.where(np.isnan(values), np.inf, sign * values).argmin(axis=1)
+            beyond = sign * values[all_names, at] < sign * ends[:, end]
+            ends[beyond, end], at_ends[beyond, end] = (each[all_names, at][beyond] for each in (values, errors))
+        release(*channels.values())
+    sampled = _between_outputs(times, channels, ends, parts, numbers_at_once)
+    widths = np.fmax(at_ends, ROUNDING * np.abs(ends)) + sampled
+    numbers = np.column_stack([over_time, np.where(np.isinf(ends), np.nan, widths), sampled]).tolist()
+    return {name: ErrorBar(*each) for name, each in zip(names, numbers, strict=True)}
 
 
 def _between_outputs(
-    times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors], numbers_at_once: int
-) -> dict[str, tuple[float, float]]:
-    """Return by how much each channel falls below its least value, and exceeds its greatest one, between output times."""
-    names = parts[0].names
+    times: np.ndarray,
+    channels: dict[str, np.ndarray],
+    ends: np.ndarray,
+    parts: Sequence[ChannelErrors],
+    numbers_at_once: int,
+) -> np.ndarray:
+    """Return by how much channels fall below their least value, and exceed their greatest one, between output times.
+
+    `ends`: these values, shape (channels, 2), infinite without values. The result has that shape; NaN is without values.
+    """
+    names, found = parts[0].names, np.full(ends.shape, np.nan)
     owners = np.argmax([np.ptp(part.values, axis=1) for part in parts], axis=0)  # the mechanism of each channel
-    known = np.array([not np.isnan(channels[name]).all() for name in names])
-    found: dict[str, tuple[float, float]] = {}
     for number, part in enumerate(parts):
-        own = np.flatnonzero(known & (owners == number)).tolist()
-        t = np.sort(np.concatenate([times, part.t]))
-        t = t[np.diff(t, prepend=-np.inf) > 0.0]
-        at = np.searchsorted(t, times)
-        rows = ((np.interp(t, part.t, part.values[k]), channels[names[k]]) for k in own)
-        ends = _both_ends(t, rows, at, part.restarts, numbers_at_once)
-        found |= {names[k]: each for k, each in zip(own, ends, strict=True)}
+        own = np.flatnonzero(np.isfinite(ends).all(axis=1) & (owners == number))
+        shown = [channels[names[k]] for k in own.tolist()]
+
+        def values(block: slice, part=part, own=own, shown=shown) -> tuple[np.ndarray, np.ndarray]:
+            at = times[block]
+            inner = part.t[np.searchsorted(part.t, at[0]) : np.searchsorted(part.t, at[-1], side="right")]
+            t = np.sort(np.concatenate([at, inner]))
+            t = t[np.diff(t, prepend=-np.inf) > 0.0]
+            found = np.array([np.interp(t, part.t, part.values[k]) for k in own])
+            found[:, np.searchsorted(t, at)] = [each[block] for each in shown]
+            release(*shown)
+            return t, found
+
+        if len(own):
+            at_once = numbers_at_once // (len(own) * (1 + len(part.t) // len(times)))
+            found[own] = _both_ends(len(times), values, ends[own], part.restarts, at_once)
     return found
 
 
 def _both_ends(
-    t: np.ndarray,
-    rows: Iterable[tuple[np.ndarray, np.ndarray]],
-    at: np.ndarray,
-    restarts: np.ndarray,
-    numbers_at_once: int,
-) -> Iterator[tuple[float, float]]:
-    """Return the excesses of `between` for the least and the greatest value of channels.
+    count: int, values: Callable[[slice], tuple[np.ndarray, np.ndarray]], limits: np.ndarray, restarts: np.ndarray, at_once: int,
+) -> np.ndarray:  # fmt: skip
+    """Return the excesses of `between` for the least and the greatest value of channels, `limits`, both of shape (channels, 2).
 
-    `rows`: values at the times `t`, and those at the times of the outputs, `t[at]`.
+    `count`: number of reported instants. `values`: function for the times and the values, shape (channels, n), from the first to the
+    last of some of these. `at_once`: number of them that are examined together.
     """
-    remaining = iter(rows)
-    while some := list(islice(remaining, max(1, numbers_at_once // len(t)))):
-        fine = np.array([values for values, _ in some])
-        fine[:, at] = [values for _, values in some]
-        yield from zip(between(t, -fine, at, restarts).tolist(), between(t, fine, at, restarts).tolist(), strict=True)
+    found, rows = np.zeros(limits.shape), 1 + at_once // ARRAYS
+    for first in range(0, count, rows):
+        t, some = values(slice(max(first - NEIGHBOURS, 0), min(first + rows + NEIGHBOURS, count)))
+        for end, sign in enumerate((-1.0, 1.0)):
+            found[:, end] = np.maximum(found[:, end], _excess(t, sign * some, sign * limits[:, end], restarts))
+    return found
 
 
 def bars_by_difference(
@@ -269,11 +280,23 @@ def bars_by_difference(
             errors[name] = np.maximum(error - _jump_beside(values, steps, close), 0.0) / abs(1.0 - part)
     found = dict.fromkeys(errors, UNKNOWN)
     known = [name for name, error in errors.items() if not np.isnan(error).all()]
-    ends = _both_ends(times, ((others[name], channels[name]) for name in known), at, restarts, numbers_at_once)
-    for name, sampled in zip(known, ends, strict=True):
-        error, values = errors[name], channels[name]
-        least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
-        found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
+    if not known:
+        return found
+    peaks = [(int(np.nanargmin(channels[name])), int(np.nanargmax(channels[name]))) for name in known]
+    limits = np.array([channels[name][list(pair)] for name, pair in zip(known, peaks, strict=True)])
+
+    def both(block: slice) -> tuple[np.ndarray, np.ndarray]:
+        first = at[block.start]
+        whole = slice(first, at[block.stop - 1] + 1)
+        some = np.array([others[name][whole] for name in known])
+        some[:, at[block] - first] = [channels[name][block] for name in known]
+        return times[whole], some
+
+    at_once = numbers_at_once // (len(known) * (1 + len(times) // len(at)))
+    sampled = _both_ends(len(at), both, limits, restarts, at_once).tolist()
+    for name, pair, between_them in zip(known, peaks, sampled, strict=True):
+        least, greatest = (float(errors[name][peak]) + excess for peak, excess in zip(pair, between_them, strict=True))
+        found[name] = ErrorBar(float(np.nanmax(errors[name])), least, greatest, *between_them)
     return found
 
 

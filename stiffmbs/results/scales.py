@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..dynamics.storage import release
 from ..reading.formula.measured import CHANNELS, unit_of
 from ..reading.names import owner_of
 
@@ -76,6 +77,7 @@ def scales(
         sizes = np.abs(values - origin)
         # A request may have no value (sqrt(-1)) or a pole (1/0) at some times or at all: neither is a size.
         own[key] = max(own.get(key, 0.0), float(sizes.max(initial=0.0, where=np.isfinite(sizes))))
+        release(values)
     nothing = REQUEST_ROUNDING * max(own.values(), default=0.0)
     own = {key: value if key[1] or value > nothing else 0.0 for key, value in own.items()}
     largest: dict[str, float] = {}

@@ -387,6 +387,6 @@ EXPECTED = {
     "consistency.large_turn": 26, "consistency.most_listed": 3, "elimination.worth_compiling": 54,
     "elimination.most_multiplications": 9, "elimination.even": 53, "elimination.kept": 40, "elimination.lost": 80,
     "elimination.small": 27, "elimination.together": 80, "elimination.relative": 27, "elimination.residual": 27,
-    "elimination.least_residual": 33, "storage.largest_in_memory": 13, "storage.block": 100000,
+    "elimination.least_residual": 33, "storage.largest_in_memory": 5, "storage.block": 100000,
     "dynamics.friction_loads:ANOTHER": 40,
 }  # fmt: skip

@@ -54,6 +54,18 @@ def largest_energy_without_a_check():
         )
 
 
+def blocks_of_instants():
+    """Return the blocks in which 1000 instants of a channel are examined, 800 at once."""
+    found = []
+
+    def values(block):
+        found.append(block)
+        return np.arange(1000.0)[block], np.zeros((1, 1000))[:, block]
+
+    error_bars._both_ends(1000, values, np.zeros((1, 2)), np.empty(0), 800)
+    return found
+
+
 def accepted(rtol):
     """Return the part of the exchanged energy that may be missing."""
     return energy_balance_notes._accepted(RunSettings(solver="bdf", rtol=rtol))
@@ -146,6 +158,8 @@ def most_reliable_digits():
 
 
 DECISIONS = {
+    "results.error_bars:ARRAYS": lambda: len(blocks_of_instants()),
+    "results.error_bars:NEIGHBOURS": lambda: blocks_of_instants()[0].stop - blocks_of_instants()[1].start,
     "results.digits:MOST_DIGITS": most_reliable_digits,
     "results.energy_balance:MOST_INSTANTS": instants_of_a_balance,
     "results.energy_balance_notes:BROKEN": largest_energy_without_a_check,
@@ -173,6 +187,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
+    "results.error_bars:ARRAYS": 10, "results.error_bars:NEIGHBOURS": 6,
     "results.digits:MOST_DIGITS": 12,
     "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance_notes:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,

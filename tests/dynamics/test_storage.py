@@ -55,7 +55,6 @@ def test_results_in_files_are_those_in_memory(examples, tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.xfail(strict=True, reason="the estimate of errors takes 550 bytes for each output point")
 def test_two_million_points_take_less_memory_than_their_rows():
     """The rows of one pinned bar would be 30 numbers each: 480 MB."""
     program = (
