@@ -20,6 +20,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -49,8 +50,8 @@ FALSE = 3.0
 FAR_BELOW = 5.0
 """An estimate is far too small if the true error is more than so many times as large, without a note."""
 NOTE = "the estimated error of"
-SEVERAL = "passes a singular pose"
-"""Begin of the note on a pose from which several motions go on: none of them is the truth."""
+SEVERAL = "passes a singular pose", "several motions are possible"
+"""Begins of the notes on a state from which several motions go on: none of them is the truth."""
 FACTORS = {"bdf": (3, 0.9), "radau": (3, 0.9), "projected": (4, 0.8)}
 """Factor within which the errors of positions are to be right, and in what share of runs, by integrator."""
 FORCES = 5, 0.8
@@ -64,7 +65,8 @@ class Assessment:
     """Estimate and truth of one run.
 
     - `status`: of the estimate, or ``no truth``.
-    - `true`, `estimated`: largest errors relative to the size of their channels, by group.
+    - `true`, `estimated`: largest errors relative to the size of their channels, by group. `in_peaks`: true ones relative to
+      sizes with the peaks between output times, as those of notes.
     - `noted`: True if a note says that the errors are large or lost.
     - `solver`: the integrator.
     """
@@ -75,6 +77,7 @@ class Assessment:
     noted: bool
     rtol: float
     solver: str
+    in_peaks: Mapping[str, float]
 
     def ratios(self) -> dict[str, float]:
         """Return the estimated error in the true one by group, where this is more than rounding."""
@@ -86,7 +89,7 @@ class Assessment:
     def exceeds(self) -> float:
         """Return the largest true error in the threshold of its note."""
         limits = {"positions": min(200.0 * max(self.rtol, 1e-6), 0.01)}
-        return max((true / limits.get(group, 0.01) for group, true in self.true.items()), default=0.0)
+        return max((true / limits.get(group, 0.01) for group, true in self.in_peaks.items()), default=0.0)
 
     @property
     def is_false(self) -> bool:
@@ -117,20 +120,22 @@ def assess(scene: Scene, how: Mapping[str, Any], truths: Sequence[Solution] | No
     rtol = float(how.get("rtol", scene.run.rtol))
     noted = any(note.startswith(NOTE) or "solution is lost" in note for note in found.notes)
     solver = next((name for name in FACTORS if name in str(found.solver.get("name"))), str(found.solver.get("name")))
-    nothing = Assessment("no truth", {}, {}, noted, rtol, solver)
+    nothing = Assessment("no truth", {}, {}, noted, rtol, solver, {})
     if not found.success or found.estimate is None or any(note.startswith(SEVERAL) for note in found.notes):
         return nothing
     others = references(scene, how) if truths is None else truths
-    fine = [errors_of(found, other) for other in others]
+    bars = [errors_of(found, other) for other in others]
+    fine = [largest(found, each) for each in bars]
     if not fine or any(
         abs(fine[-1][group] - true) > AGREED * true for group, true in fine[0].items() if true > ROUNDING
     ):
         return nothing
-    return Assessment(found.estimate.status, fine[0], largest(found, found.errors), noted, rtol, solver)
+    in_peaks = largest(found, bars[0], found.errors)
+    return Assessment(found.estimate.status, fine[0], largest(found, found.errors), noted, rtol, solver, in_peaks)
 
 
-def errors_of(solution: Solution, other: Solution) -> dict[str, float]:
-    """Return the largest true errors by group, from a more accurate run, at output times: rows beside events differ in time."""
+def errors_of(solution: Solution, other: Solution) -> dict[str, ErrorBar]:
+    """Return the largest true errors by channel, from a more accurate run, at output times: rows beside events differ in time."""
     bars = {}
     _, rows, others = np.intersect1d(solution.time, other.time, return_indices=True)
     for name in solution.channels:
@@ -139,16 +144,22 @@ def errors_of(solution: Solution, other: Solution) -> dict[str, float]:
         if kind_of(name) == "orientation":  # q and -q are one orientation
             error = np.minimum(error, np.abs(values + known))
         bars[name] = ErrorBar(float(np.nanmax(error, initial=0.0)), 0.0, 0.0, 0.0, 0.0)
-    return largest(solution, bars)
+    return bars
 
 
-def largest(solution: Solution, bars: Mapping[str, ErrorBar]) -> dict[str, float]:
-    """Return the largest errors relative to the sizes of their channels, by group."""
+def largest(
+    solution: Solution, bars: Mapping[str, ErrorBar], peaks: Mapping[str, ErrorBar] = MappingProxyType({})
+) -> dict[str, float]:
+    """Return the largest errors relative to the sizes of their channels, by group; `peaks`: bars of peaks that sizes contain."""
     from dataclasses import replace
 
     known = KnownErrors(replace(solution, errors=bars))
-    found = {group: known.relative(over_time, group) for group in GROUPS}
-    return {group: max(errors.values()) for group, errors in found.items() if errors}
+    found: dict[str, float] = {}
+    for group in GROUPS:
+        for name, error in known.relative(over_time, group).items():
+            above = max(peaks[name].sampled_least, peaks[name].sampled_greatest) if name in peaks else 0.0
+            found[group] = max(found.get(group, 0.0), error / (1.0 + float(np.nan_to_num(above)) / known.sizes[name]))
+    return found
 
 
 def drawn(seed: int, solver: str = "") -> tuple[Scene, dict[str, Any]]:

@@ -125,8 +125,11 @@ def _judged(
     allowed = LEAST + min(of_tolerance, MOST) + 2.0 * how["rtol"]
     if error > allowed and any(words in note for note in solution.notes for words in REPORTED):
         return told("; ".join(solution.notes), ())
-    if error > allowed and solution.estimate and error <= OF_ESTIMATE * by_speed * solution.errors[channel].over_time:
-        return told(solution.estimate.sentence, ())
+    if error > allowed:
+        assessed = run(read_scene(json.dumps(scene)), duration=duration, **how, errors=True)
+        estimate, known = assessed.estimate, OF_ESTIMATE * by_speed * assessed.errors[channel].over_time
+        if estimate and (estimate.status == "lost" or error <= known):
+            return told(estimate.sentence, ())
     return measured(error, allowed, f"{solution.solver['steps']} steps, found {found:.6g}, {detail}")
 
 
