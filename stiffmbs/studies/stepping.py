@@ -96,7 +96,7 @@ class StartedSteps:
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)
-        self._q[:], self._u[:] = self._engine.split(last.y)
+        self._q[:], self._u[:] = last.state
 
 
 def sound(integrator: Integrator[NativeEngine], reached: Reached) -> Reached:
@@ -242,7 +242,7 @@ class ImplicitSteps:
 
     def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u at a time within the last step; no error test of radau sees the drift of its polynomial."""
-        (q,), (u,) = self._engine.states(self._engine.ida.reported_at(t)[None])
+        (q,), (u,) = self._engine.equations.states(self._engine.ida.reported_at(t)[None])
         return projected(self._dynamics, t, (q, u), self._last_step()) if self._one_step else (q, u)
 
     def jump(self) -> None:

@@ -20,7 +20,6 @@ from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
 from ..events.whole_steps import WholeSteps
 from ..reasons import OF_STATUS, Reason
-from ..stiff_rows import States
 from ..suspect import suspect
 from ..trajectory import Grid, History, Outcome, Trajectory
 from .integration import REASONS, Integration, stiff_sentence
@@ -102,7 +101,7 @@ class AdaptiveSteps(Engine):
                 most = min(2 * most, work.capacity) if self._may_leave else most
                 look_at, held_at = self._looks(most)
             fired = tuple(work.fired()) if self._status == AT_EVENT else ()
-            yield Reached(*work.collect(), work.t, work.y, fired)
+            yield Reached(*work.collect(), work.t, (work.q.copy(), work.u.copy()), fired)
             if reason:
                 raise SolverError(reason)
 
@@ -127,21 +126,6 @@ class AdaptiveSteps(Engine):
     def _looks(self, most: int) -> tuple[int, int]:
         """Return the step count, and the count of steps limited by stability, at which the next check is due."""
         return self.work.count("steps") + most, self.work.count("stiff_steps") + held(most, self._may_leave)
-
-    def states(self, rows: np.ndarray) -> States:
-        """See `Engine`."""
-        n_q = len(self.work.q)
-        return rows[:, :n_q], rows[:, n_q:]
-
-    def split(self, y: np.ndarray) -> States:
-        """See `Engine`."""
-        n_q = len(self.work.q)
-        return y[:n_q].copy(), y[n_q:].copy()
-
-    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `Engine`."""
-        y = np.concatenate([q, u])
-        return y, y
 
     def steps(self) -> int:
         """See `Engine`."""

@@ -16,6 +16,7 @@ from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeSteps
+from ..stiff_rows import States
 from ..trajectory import Grid
 from .native.parameters import CONTROL
 from .scheme import Scheme, StepMemory
@@ -125,12 +126,13 @@ class Integration:
         begin, end, y = self._memory.whole_steps.kept()
         return (WholeSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
 
-    def collect(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and states of the rows of the last call, valid up to the next one; keep the ends of its steps."""
+    def collect(self) -> tuple[np.ndarray, States]:
+        """Return times, and q and u, of the rows of the last call, valid up to the next one; keep the ends of its steps."""
         count, before, memory = self.count("rows"), self._collected, self._memory
         self._cells["rows"], self._collected = 0, self.count("steps")
         self.step_times.append(memory.ends[np.arange(before, self._collected) % self.capacity])
-        return memory.row_t[:count], memory.row_y[:count]
+        rows = memory.row_y[:count]
+        return memory.row_t[:count], (rows[:, : self._n_q], rows[:, self._n_q :])
 
 
 _USE_BDF = "the scene is stiff; use solver bdf or radau"

@@ -242,7 +242,8 @@ class NativeEngine(Engine):
         failure = f"{self.ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         fired = tuple(self.ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
         self._record(fired)
-        return Reached(times, rows, self.ida.t, self.ida.y, fired, failure, passed)
+        states = self.equations.states(rows)
+        return Reached(times, states, self.ida.t, self.split(self.ida.y), fired, failure, passed)
 
     def _worst(self) -> str:
         """Return a clause on the unknown with the largest error or Newton correction in the last step, if known."""
@@ -266,20 +267,10 @@ class NativeEngine(Engine):
     def _starts(self) -> Starts:
         return self._make_starts()
 
-    def states(self, rows: np.ndarray) -> States:
-        """See `Engine`."""
-        return self.equations.states(rows)
-
     def split(self, y: np.ndarray) -> States:
-        """See `Engine`."""
+        """Return q and u of all unknowns."""
         (q,), (u,) = self.equations.states(y[None, self.equations.independent])
         return q, u
-
-    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `Engine`."""
-        y = np.zeros(self.equations.n)
-        y[self.equations.independent] = self.equations.coordinates.state(q, u)
-        return y[self.equations.independent], y
 
     def whole_steps(self) -> tuple[WholeSteps, ...]:
         """See `Engine`."""
@@ -291,7 +282,7 @@ class NativeEngine(Engine):
         if failure := self._failure(reached, grid):
             raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
         if reached.t < grid.end and self.steps() >= RELAXATION.check_interval:
-            refuse_drift(self._dynamics, reached.t, *self.split(reached.y), self._settings)
+            refuse_drift(self._dynamics, reached.t, *reached.state, self._settings)
 
     def _failure(self, reached: Reached, grid: Grid) -> str:
         """Return the reason why the run ends at this state, or an empty string."""
@@ -300,7 +291,7 @@ class NativeEngine(Engine):
         by_rounding = steps > CONTROL.enough_steps and (endless or governed_by_rounding(self.statistics()))
         if not (by_rounding or reached.failure):
             return ""
-        q, u = self.split(reached.y)
+        q, u = reached.state
         missing = no_value_ahead(dynamics, reached.t, q, u) if reached.failure else ""
         reason = missing or too_fine(dynamics, self._settings, reached.t, q)
         if reason or not reached.failure:
