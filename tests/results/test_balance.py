@@ -8,7 +8,6 @@ import pytest
 import stiffmbs
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.read_scene import read_scene
-from stiffmbs.solve.error_control import newton
 from stiffmbs.solve.ida.output_correction import OutputCorrection
 from stiffmbs.solve.ida.starting import starts
 from stiffmbs.tuning import parameters_of
@@ -34,8 +33,7 @@ def force_error(solution):
 @pytest.fixture
 def as_interpolated(monkeypatch):
     def switch_off():
-        for module in (newton, starts):
-            monkeypatch.setattr(module, "POLISHING", replace(parameters_of(module.POLISHING), amplified=np.inf))
+        monkeypatch.setattr(starts, "POLISHING", replace(parameters_of(starts.POLISHING), amplified=np.inf))
 
     return switch_off
 
@@ -125,7 +123,9 @@ def test_every_matrix_serves(kind):
     def rows(matrix, long_step):
         dynamics = Dynamics(chain.system)
         ida = chain.native(matrix=matrix, state=dynamics.state)
-        ida.correct_outputs(dynamics, True, long_step, 1e-6, 0.0)
+        cells = ida.output_correction.cells
+        cells["long"], cells["enough"], cells["balanced"] = long_step, 1e-6, 0.0
+        ida.correct_outputs(dynamics, True)
         return chain.through(ida, times)[0]
 
     expected = rows(None, 0.0)

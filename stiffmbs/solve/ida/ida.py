@@ -319,18 +319,12 @@ class NativeIda:
         self.ask(function, *arguments, self.output_vector)
         return self.output.copy()
 
-    def correct_outputs(
-        self, dynamics: Dynamics, may_stiffen: bool, long_step: float, part: float, balanced: float
-    ) -> None:
-        """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`).
-
-        `may_stiffen`: true if that may become finite or smaller before the next start.
-        """
+    def correct_outputs(self, dynamics: Dynamics, may_stiffen: bool) -> None:
+        """Correct states within long steps. `may_stiffen`: true if steps may be long for forces before the next start."""
         needed = may_stiffen or self._has_kinks
         for each in (self.output_correction, self._closing)[: 1 + bool(len(self._trace))]:
             if needed and not (self._formula.repeat or each.ready):
                 each.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
-        self.output_correction.limit(long_step, part, balanced)
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and add its steps to the history; return IDA's last flag."""

@@ -16,8 +16,7 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ..engine import Begun, Engine, Reached
 from ..error_control.error_test import ErrorControl
-from ..error_control.native.parameters import NEWTON, POLISHING
-from ..error_control.newton import Stiffness
+from ..error_control.native.parameters import NEWTON
 from ..error_control.precision import governed_by_rounding, too_fine
 from ..error_control.relaxation import RELAXATION, refuse_drift
 from ..error_control.stability_limit import StabilityLimitDetection
@@ -64,7 +63,7 @@ class NativeEngine(Engine):
         self._width, self.equations, self.matrix = len(reported), equations, matrix
         self._by_radau = formula is not None
         self.recorder: StepRecorder | None = None
-        self._rtol, self._settings = settings.rtol, settings
+        self._settings = settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
         self.watch = self.ida.watch
@@ -81,7 +80,7 @@ class NativeEngine(Engine):
             self.ida.keep_steps(False)
             self.recorder = None
         self._order.forget()
-        self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
+        self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def begin_run(self, features: InputFeatures, grid: Grid) -> None:
@@ -110,12 +109,6 @@ class NativeEngine(Engine):
             return ()
         self.ida.keep_steps(False)
         return recorder.pieces(self.equations)
-
-    def _record_start(self, t: float) -> None:
-        if self.recorder:
-            row = self.present()
-            row[0] = t
-            self.recorder.begin(row)
 
     def _record(self, fired: tuple[int, ...]) -> None:
         """Move the steps since the last return of IDA to the record."""
@@ -151,21 +144,11 @@ class NativeEngine(Engine):
 
     def _take_up(self, t: float) -> None:
         self.ida.begun_at(t)
-        self._stiffness, self._newton = self._starts.found()
-        self._follow_stiffness(t)
-        self._record_start(t)
-
-    def _follow_stiffness(self, t: float) -> None:
-        """Set the correction of states within long steps, and the monitor of vibrations, by the stiffness."""
-        stiffness = self._stiffness
-        self.ida.correct_outputs(
-            self._dynamics,
-            self._starts.may_stiffen,
-            stiffness.long_step,
-            max(stiffness.allowed_residual, NEWTON.precision / self._rtol),
-            POLISHING.unbalanced * self._rtol,
-        )
+        self._newton = self._starts.newton
+        self.ida.correct_outputs(self._dynamics, self._starts.may_stiffen)
         self._order.begin(t, self.ida.history.count)
+        if self.recorder:
+            self.recorder.begin(self.present())
 
     def _adapt(self, stop: float) -> None:
         """Adapt Newton's tolerance and the highest order between two calls."""
@@ -224,7 +207,7 @@ class NativeEngine(Engine):
         served, status = self.ida.advance_past(starts, times, np.array(stops), self._order.order, rows)
         passed, steps = starts.passed
         if passed:
-            self._stiffness, self._newton = starts.found()
+            self._newton = starts.newton
             self._order.begin(starts.t, before + steps)
         return served, status, passed
 
@@ -319,7 +302,7 @@ class NativeEngine(Engine):
 
     @property
     def long_step(self) -> float:
-        return self._starts.found()[0].long_step
+        return float(self.ida.output_correction.cells["long"])
 
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""

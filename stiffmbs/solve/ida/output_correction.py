@@ -17,14 +17,16 @@ VECTORS = "y", "yp", "defect", "correction", "weight", "size", "zero"
 class OutputCorrection:
     """Matrix, factors and vectors for the correction of interpolated states; created for the first stiff scene.
 
-    `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`.
+    `table`, `cells`: table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`, and
+    its cells, which starts set. A state stays unchanged if forces on each body balance up to the part `balanced` of the largest,
+    also with closed joints.
     """
 
     def __init__(self, equations: Equations) -> None:
         self._equations = equations
         self.table = Table(OUTPUT_CORRECTION)
-        self._cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
-        self._cells["long"] = np.inf
+        self.cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
+        self.cells["long"] = np.inf
         self._assembled: Assembled | None = None
         self._vectors: dict[str, np.ndarray] = {}
 
@@ -71,17 +73,9 @@ class OutputCorrection:
             "pose": pose,
         }
 
-    def limit(self, long_step: float, part: float, balanced: float) -> None:
-        """Set the step, s, above which states within it are corrected, and the part of the tolerance that may remain.
-
-        They stay unchanged if forces on each body balance up to the part `balanced` of the largest, also with closed
-        joints.
-        """
-        self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
-
     def note(self) -> str:
         """Return a sentence on states that could not be corrected; empty if there are none."""
-        count, first = int(self._cells["failed"]), float(self._cells["first_failed"])
+        count, first = int(self.cells["failed"]), float(self.cells["first_failed"])
         return (
             f"coordinates are interpolated at {count} output time{'s' * (count > 1)} from t = {first:.6g} s on, where stiff forces "
             f"do not balance: they and reactions may be wrong there; reduce rtol{', or use solver: radau' * self.ready}"
@@ -89,7 +83,7 @@ class OutputCorrection:
 
     def forget(self) -> None:
         """Discard the factors and their pivots, and the number of states that could not be corrected."""
-        self._cells["factored"], self._cells["failed"] = 0.0, 0
+        self.cells["factored"], self.cells["failed"] = 0.0, 0
         if self._assembled is not None:
             self._assembled.forget()
 

@@ -17,7 +17,7 @@ from ....model.settings import RunSettings
 from ...engine import Begun
 from ...error_control.error_test import ErrorControl
 from ...error_control.native.parameters import NEWTON, POLISHING
-from ...error_control.newton import RowSums, Stiffness, row_sums_of
+from ...error_control.newton import RowSums, row_sums_of
 from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
 from ..native.layouts import START
@@ -43,8 +43,6 @@ UNUSED = dict.fromkeys(START, 0) | {
     name: np.empty(0, dtype=DTYPES[START[name]]) for name in START if START[name] in DTYPES
 }
 """Contents of columns that only restarts use, before the first of them."""
-OF_STIFFNESS = "of_positions", "of_velocities"
-"""Cells of the fields of a `Stiffness`."""
 
 
 class Starts:
@@ -66,8 +64,7 @@ class Starts:
             "dynamics": dynamics.table, "ida": ida.table, "error_norm": ida.error_norm.table, "n_watched": ida.watch.n,
             "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
             **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
-            **newton_bounds(settings.rtol, control.newton), "growth": control.growth,
-            "amplified": POLISHING.amplified, "least": NEWTON.precision / settings.rtol,
+            **newton_bounds(settings.rtol, control.newton), **polishing_bounds(settings.rtol), "growth": control.growth,
             **{name: ida.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
         self._values, self._ida, self._table = values, ida, packed(START, {**UNUSED, **values})
@@ -145,10 +142,10 @@ class Starts:
         """Return the number of breakpoints passed by the last call, and its steps before the last of them."""
         return int(self._cells["passed"]), int(self._cells["steps_before"])
 
-    def found(self) -> tuple[Stiffness, float]:
-        """Return the stiffness, and the part of the tolerance that Newton's iteration may leave."""
-        cells = self._cells
-        return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
+    @property
+    def newton(self) -> float:
+        """Return the part of the tolerance that Newton's iteration may leave."""
+        return float(self._cells["newton"])
 
 
 def _sound(flag: int) -> None:
@@ -160,6 +157,11 @@ def newton_bounds(rtol: float, fixed: float | None) -> dict[str, float]:
     """Return the product of Newton's tolerance and the stiffness, and its bounds: the fixed one of the integrator, if any."""
     tightest = max(NEWTON.negligible, NEWTON.precision / rtol)
     return {"soft": NEWTON.soft, "loosest": fixed or NEWTON.loosest, "tightest": fixed or tightest}
+
+
+def polishing_bounds(rtol: float) -> dict[str, float]:
+    """Return the factor of long steps, and the least residual and the imbalance that corrections within them may leave."""
+    return {"amplified": POLISHING.amplified, "least": NEWTON.precision / rtol, "balanced": POLISHING.unbalanced * rtol}
 
 
 def _places(equations: Equations) -> dict[str, Any]:

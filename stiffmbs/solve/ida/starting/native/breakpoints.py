@@ -19,7 +19,6 @@ from stiffmbs.solve.ida.starting.native.start import (
     begun,
     brought_back,
     keep_counters,
-    limit,
     prepare,
     start_view,
 )
@@ -85,7 +84,6 @@ def _restarted_at_breakpoint(w, c, t, highest_order):
     restart_counters(w, s, t)
     if not _same_offsets(s, w, e) or _started(w, c, s, m, t, 1, highest_order) < 0:
         return UNFINISHED
-    limit(w, c)
     w.t = t
     return OK
 
