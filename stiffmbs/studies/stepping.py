@@ -266,7 +266,7 @@ class FixedSteps:
         self._dynamics, self._settings, self._step = dynamics, settings, settings.step
         self._first, self._end, self._changes = t, t, dynamics.input_changes
         grid = Grid(t, t + settings.duration, None)
-        self._work = Integration(scheme_of(settings), dynamics, start, grid, settings)
+        self._work = Integration.of(scheme_of(settings), dynamics, start, grid, settings)
         self.q, self.u, self.time, self.length = self._work.q, self._work.u, t, 0.0
         self._t, self._at = t, self._work.at
         self._one, self._one_long, self._many = ONE_IN_LOOP.short_call, ONE_IN_LOOP.call, MANY_IN_LOOP.call

@@ -53,7 +53,7 @@ class AdaptiveSteps(Engine):
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, first: int | None = None
     ) -> None:  # fmt: skip
-        self.work = Integration(scheme, dynamics, start, grid, settings)
+        self.work = Integration.of(scheme, dynamics, start, grid, settings)
         self.watch, self.due, self.failed = self.work.watch, False, False
         self._scheme, self._dynamics, self._settings, self._end = scheme, dynamics, settings, grid.end
         self._first, self._may_leave = min(first or self.work.capacity, self.work.capacity), first is not None
