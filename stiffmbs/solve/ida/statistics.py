@@ -13,7 +13,9 @@ from .libraries import Libraries
 from .native.layouts import STEP_WIDTH
 from .native.parameters import LOOP
 
-_COUNT = Routine("stiffmbs.solve.ida.starting.native.start", "count", "void(int64, int64*, int64*, int64*, int64*)")
+_ADD = Routine(
+    "stiffmbs.solve.ida.starting.native.start", "add_counters", "void(int64, int64*, int64*, int64*, int64*)"
+)
 
 COUNTERS = {
     "steps": "IDAGetNumSteps",
@@ -47,7 +49,7 @@ class Statistics:
         }  # fmt: skip
 
     def _add_to(self, sums: np.ndarray) -> None:
-        _COUNT.short_call(len(sums), *addresses(self._functions, self._counted, self._value, sums))
+        _ADD.short_call(len(sums), *addresses(self._functions, self._counted, self._value, sums))
 
     def total(self) -> dict[str, int]:
         """Return all counters."""

@@ -248,18 +248,12 @@ def resume(newton, highest_order, table):
     return int32(begun(w, c, c.returned, highest_order))
 
 
-@compiled
 def add_counters(count, functions, arguments, value, sums):
     """Add the results of some counter functions to sums; `value` has space for one number."""
     for k in range(count):
         value[0] = 0  # C's long may be shorter
         call_int(functions[k], (arguments[k], value))
         sums[k] += value[0]
-
-
-def count(n, functions, arguments, value, sums):
-    """Call `add_counters` from Python."""
-    add_counters(n, functions, arguments, value, sums)
 
 
 @compiled
