@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -64,8 +64,7 @@ class NativeEngine(Engine):
         self._by_radau = formula is not None
         self.recorder: StepRecorder | None = None
         self._settings = settings
-        self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
-        self._dynamics = dynamics
+        self._dynamics, self._control = dynamics, control
         self.watch = self.ida.watch
         self.watch.follow_reactions(dynamics)
         self._order = StabilityLimitDetection(
@@ -164,7 +163,7 @@ class NativeEngine(Engine):
 
         Calls of a few steps, as those of a simulation, are counted together up to the number of steps of a call in a run.
         """
-        counted = self.ida.counted()
+        counted = self.ida.counters.total()
         steps = counted["steps"] - self._counted["steps"]
         if steps < self.ida.usual_steps:
             return
@@ -248,7 +247,9 @@ class NativeEngine(Engine):
 
     @cached_property
     def _starts(self) -> Starts:
-        return self._make_starts()
+        from .starting.starts import Starts
+
+        return Starts(self._dynamics, self.equations, self.ida, self._settings, self._control)
 
     def split(self, y: np.ndarray) -> States:
         """Return q and u of all unknowns."""
@@ -298,7 +299,7 @@ class NativeEngine(Engine):
 
     def statistics(self) -> dict[str, int | float | str]:
         """Return the name of the linear solver, and counters since the first start."""
-        return {"linear_solver": self.matrix.sentence(), **self.ida.statistics()}
+        return {"linear_solver": self.matrix.sentence(), **self.ida.counters.counted()}
 
     @property
     def long_step(self) -> float:

@@ -70,7 +70,7 @@ def eased(newton, failures=1000, steps=1000):
     """Return the Newton tolerance after a call with a number of failures."""
     begun = [newton]
     counted = {"steps": steps, "convergence_failures": failures}
-    ida = Record(counted=lambda: counted, usual_steps=0)
+    ida = Record(counters=Record(total=lambda: counted), usual_steps=0)
     engine = Record(
         ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _resume=begun.append,
     )  # fmt: skip

@@ -21,7 +21,7 @@ from ...error_control.newton import RowSums, row_sums_of
 from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
 from ..native.layouts import START
-from ..statistics import Statistics, failure_sentence
+from ..statistics import failure_sentence
 
 if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
@@ -48,14 +48,13 @@ UNUSED = dict.fromkeys(START, 0) | {
 class Starts:
     """Compiled starts of one integrator.
 
-    `ida`: driver of IDA. `statistics`: counters of IDA. `may_pass`: true if one call may pass several breakpoints: no event
+    `ida`: driver of IDA. `may_pass`: true if one call may pass several breakpoints: no event
     functions, and no forces that depend on multipliers. `may_stiffen`: true if forces depend on positions or velocities.
     """
 
     def __init__(
-        self, dynamics: Dynamics, equations: Equations, ida: NativeIda, statistics: Statistics,
-        settings: RunSettings, control: ErrorControl,
-    ) -> None:  # fmt: skip
+        self, dynamics: Dynamics, equations: Equations, ida: NativeIda, settings: RunSettings, control: ErrorControl
+    ) -> None:
         system, self._state = dynamics.system, dynamics.state
         for term_set in ("motion", "tangent"):
             self._state.load(term_set)
@@ -63,7 +62,7 @@ class Starts:
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": ida.table, "error_norm": ida.error_norm.table, "n_watched": ida.watch.n,
             "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
-            **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
+            **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **ida.counters.arrays,
             **newton_bounds(settings.rtol, control.newton), **polishing_bounds(settings.rtol), "growth": control.growth,
             **{name: ida.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
