@@ -132,9 +132,15 @@ class Chattering:
 
     def refuse(self, t: float, q: np.ndarray, u: np.ndarray, event_functions: np.ndarray) -> None:
         """Raise a ChatteringError that names the first of some event functions, if there are any."""
-        if len(event_functions):
-            sentence = _of_loads(self._dynamics, t, q, u) or jump_sentence(self._dynamics, int(event_functions[0]))
+        if sentence := _of_sliding(self._dynamics, t, q, u, event_functions):
             raise ChatteringError(f"stopped at t = {t:.9g} s: {sentence}")
+
+
+def _of_sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, event_functions: np.ndarray) -> str:
+    """Return a sentence on the first of some event functions at which a motion slides; empty without any."""
+    if not len(event_functions):
+        return ""
+    return _of_loads(dynamics, t, q, u) or jump_sentence(dynamics, int(event_functions[0]))
 
 
 def _of_loads(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
@@ -207,7 +213,4 @@ class HoveringEvents:
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
-        found = sliding(self._dynamics, t, q, u) if self.any else self.band
-        return (
-            (_of_loads(self._dynamics, t, q, u) or jump_sentence(self._dynamics, int(found[0]))) if len(found) else ""
-        )
+        return _of_sliding(self._dynamics, t, q, u, sliding(self._dynamics, t, q, u) if self.any else self.band)

@@ -190,14 +190,14 @@ def _relaxing(dynamics: Dynamics, settings: RunSettings, factor: float) -> dict[
 
 def _restarting(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
     """Return what restarts need: event functions, revolution counters, sizes of jumps, and memory."""
-    system, jumps = dynamics.system, Jumps(dynamics, settings)
+    system, (speed, least_jump) = dynamics.system, Jumps(dynamics, settings).resolution
     counted, n = system.term("position", "continuous_angle"), system.n_event_functions
     along_q, along_u = direction_of(dynamics)
     return {
         "n_event_functions": n, "first_limit": system.first_limit,
         "n_counters_of_angles": len(counted.row), "angle_source": integers(counted.source), "angle_row": integers(counted.row),
         "reach": JUMP.larger_move, "along_q": along_q, "along_u": along_u,
-        "largest_jump": VELOCITY_JUMP.least, "least_jump": jumps.least, "speed": jumps.scale,
+        "largest_jump": VELOCITY_JUMP.least, "least_jump": least_jump, "speed": speed,
         "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
     }  # fmt: skip
 
