@@ -29,7 +29,6 @@ from stiffmbs.solve.linear_solvers.native.node_factors import (
     multiplied,
     triangular,
 )
-from stiffmbs.solve.linear_solvers.native.pair_factors import inverted_of_pairs, triangular_of_pairs
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 from stiffmbs.solve.linear_solvers.native.sparse_lu import sparse_view
 from stiffmbs.sparse import block_updates
@@ -75,12 +74,8 @@ def _factor_node(s, k, first):
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
     lower = shifted(right, size * s.right_width[k])  # L^-1 P is stored after the rows right of the diagonal
-    if s.parts == 2:
-        triangular_of_pairs(s, down, stride, lower, width, size, first)
-        inverted_of_pairs(s, down, stride, width, size)
-    else:
-        triangular(s, down, stride, lower, width, size, first)
-        inverted(s, down, stride, width, size)
+    triangular(s, down, stride, lower, width, size, first)
+    inverted(s, down, stride, width, size)
     multiplied(s, lower, width, right, s.right_width[k], size)
 
 
