@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
 from typing import Generic, TypeVar
 
@@ -17,11 +18,11 @@ from .events.native.parameters import SEARCH
 from .events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from .events.restart import straight_on
 from .ida.native.parameters import LOOP
-from .step_logging import is_logged, log_step
 from .stiff_rows import States, projected
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory, just_after
 
 E = TypeVar("E", bound=Engine)
+LOGGER = logging.getLogger(__name__)
 
 
 class Integrator(Generic[E]):
@@ -181,14 +182,21 @@ def integrated(
 
     `pays`: called after each return of the engine. The run ends at `integrator.reached` when it returns False.
     """
-    engine, rows = integrator.engine, Rows.of(integrator.dynamics.system, grid)
+    engine, rows, logged = (
+        integrator.engine,
+        Rows.of(integrator.dynamics.system, grid),
+        LOGGER.isEnabledFor(logging.DEBUG),
+    )
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
-        for reached in integrator.run(start, grid, passing=not is_logged()):
+        for reached in integrator.run(start, grid, passing=not logged):
             # multipliers are in no error test: those of the output times follow from the accelerations at q and u
             rows.extend(reached.times, *reached.rows)
-            if is_logged() and (step := engine.last_step()):
-                log_step(reached.t, *step)
+            if logged and (step := engine.last_step()):
+                LOGGER.debug(
+                    f"t = {reached.t:.6g} s, step {step[0]:.3g} s{f', order {step[1]}' if step[1] else ''}",
+                    extra={"step": step[0], "order": step[1]},
+                )
             watch(reached.t)
             grid.look(rows)
             engine.watch.refuse_departures()

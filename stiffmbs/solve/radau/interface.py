@@ -49,9 +49,6 @@ REPEAT, RESOLVES, COUNTER = (_ROUTINES[name] for name in ("repeat", "resolves", 
 class RadauFunctions(Libraries):
     """SUNDIALS functions, with those of IDA replaced by Radau methods."""
 
-    def __init__(self, libraries: Libraries) -> None:
-        super().__init__(libraries.loaded)
-
     def __getattr__(self, name: str) -> Any:
         if name.startswith("IDA"):
             return _ROUTINES[name].short_call
