@@ -27,6 +27,8 @@ from stiffmbs.solve.linear_solvers.native.node_factors import (
     add_two_quads_of_pairs,
     inverted,
     multiplied,
+    pair,
+    single,
     triangular,
 )
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
@@ -74,8 +76,12 @@ def _factor_node(s, k, first):
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
     lower = shifted(right, size * s.right_width[k])  # L^-1 P is stored after the rows right of the diagonal
-    triangular(s, down, stride, lower, width, size, first)
-    inverted(s, down, stride, width, size)
+    if s.parts == 1:
+        triangular(s, down, stride, lower, width, size, first, single)
+        inverted(s, down, stride, width, size, single)
+    else:
+        triangular(s, down, stride, lower, width, size, first, pair)
+        inverted(s, down, stride, width, size, pair)
     multiplied(s, lower, width, right, s.right_width[k], size)
 
 

@@ -17,7 +17,7 @@ from stiffmbs.compile.machine.native.quads import (
     times_i,
 )
 from stiffmbs.solve.linear_solvers.native.layouts import COORDINATE, MULTIPLIER
-from stiffmbs.solve.linear_solvers.native.node_factors import add_columns
+from stiffmbs.solve.linear_solvers.native.node_factors import add_columns, pair, single
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 
 
@@ -128,7 +128,7 @@ def panel(s, at):
 
 
 @compiled
-def _forward(s, k):
+def _forward(s, k, parts):
     """Multiply supernode k of x by L^-1 P, and update later supernodes."""
     size, stride = s.size[k], s.down_width[k]
     down = panel(s, s.start[2 * k])
@@ -139,49 +139,57 @@ def _forward(s, k):
         set_quad(s.scratch, at, product_of(spread(-1.0), quad(own, at)))
         set_quad(own, at, spread(0.0))
     for at in range(0, width, 4):
-        add_columns(s.parts, shifted(own, at), s.scratch, shifted(lower, at), width, size)
+        add_columns(parts, shifted(own, at), s.scratch, shifted(lower, at), width, size)
     first = s.down_at[k]
     for place in range(first, s.down_at[k + 1]):
         at = width + 4 * (place - first)
-        add_columns(s.parts, shifted(s.x, s.down_x[place]), own, shifted(down, at), stride, size)
+        add_columns(parts, shifted(s.x, s.down_x[place]), own, shifted(down, at), stride, size)
     for at in range(0, width, 4):
         set_quad(own, at, product_of(spread(-1.0), quad(own, at)))
 
 
 @compiled
-def _dot(line, by, width):
-    """Return the product of a line of a panel with gathered unknowns."""
-    total = spread(0.0)
-    for at in range(0, width, 4):
-        total = plus_product(total, quad(line, at), quad(by, at))
-    return sum_of(total)
-
-
-@compiled
-def _backward(s, k):
+def _backward(s, k, parts):
     """Update supernode k of x by later supernodes, and multiply it by U^-1."""
-    size, stride, width, parts = s.size[k], s.down_width[k], s.right_width[k], s.parts
+    size, stride, width = s.size[k], s.down_width[k], s.right_width[k]
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     own = shifted(s.x, s.node_start[k])
-    turned, known = shifted(s.scratch, width), shifted(s.scratch, parts * width)
+    turned, known = shifted(s.scratch, width), shifted(s.scratch, parts() * width)
     # The later unknowns are gathered once: each line of the panel, which holds -U, is then one contiguous dot product.
     # Those of a complex line with (re, -im) and with (im, re) are the parts of its product with x.
     first = s.right_at[k]
     for place in range(first, s.right_at[k + 1]):
         at = 4 * (place - first)
         gathered = quad(s.x, s.right_x[place])
-        if parts == 2:
+        if parts() == 2:
             gathered = product_of(gathered, quad_of(1.0, -1.0, 1.0, -1.0))
             set_quad(turned, at, times_i(gathered))
         set_quad(s.scratch, at, gathered)
     for i in range(size):
-        known[parts * i] = own[parts * i] + _dot(shifted(right, i * width), s.scratch, width)
-        if parts == 2:
-            known[2 * i + 1] = own[2 * i + 1] + _dot(shifted(right, i * width), turned, width)
+        total, other = spread(0.0), spread(0.0)
+        if parts() == 1:
+            for at in range(0, width, 4):
+                total = plus_product(total, quad(right, i * width + at), quad(s.scratch, at))
+        else:
+            for at in range(0, width, 4):
+                line = quad(right, i * width + at)
+                total = plus_product(total, line, quad(s.scratch, at))
+                other = plus_product(other, line, quad(turned, at))
+            known[2 * i + 1] = own[2 * i + 1] + sum_of(other)
+        known[parts() * i] = own[parts() * i] + sum_of(total)
     for at in range(0, s.node_start[k + 1] - s.node_start[k], 4):  # U^-1 is triangular: columns before j are zero
         set_quad(own, at, spread(0.0))
-        j = at // parts
+        j = at // parts()
         add_columns(parts, shifted(own, at), shifted(known, at), shifted(down, j * stride + at), stride, size - j)
+
+
+@compiled
+def _substituted(s, parts):
+    """Solve with the factors for the vector x."""
+    for k in range(s.n_nodes):
+        _forward(s, k, parts)
+    for k in range(s.n_nodes - 1, -1, -1):
+        _backward(s, k, parts)
 
 
 @compiled
@@ -191,7 +199,7 @@ def solved(s, of):
         s.x[p] = 0.0
     for j in range(s.n):
         s.x[s.place[j]] = of[j]
-    for k in range(s.n_nodes):
-        _forward(s, k)
-    for k in range(s.n_nodes - 1, -1, -1):
-        _backward(s, k)
+    if s.parts == 1:
+        _substituted(s, single)
+    else:
+        _substituted(s, pair)

@@ -26,35 +26,47 @@ from stiffmbs.sparse.block_updates import ROWS
 
 
 @compiled
+def single():
+    """Return the number of parts of a real number."""
+    return 1
+
+
+@compiled
+def pair():
+    """Return the number of parts of a complex number."""
+    return 2
+
+
+@compiled
 def magnitude(line, k, parts):
-    """Return the magnitude of number k of a line of numbers in parts: 1 for real, 2 for complex ones."""
-    found = abs(line[parts * k])
-    if parts == 2:  # |re| + |im| chooses a pivot as well as the modulus (cabs1 of LINPACK)
-        found += abs(line[parts * k + 1])
+    """Return the magnitude of number k of a line; `parts`, here and below, is `single` or `pair`."""
+    found = abs(line[parts() * k])
+    if parts() == 2:  # |re| + |im| chooses a pivot as well as the modulus (cabs1 of LINPACK)
+        found += abs(line[parts() * k + 1])
     return found
 
 
 @compiled
 def _exchange(line, a, b, parts):
-    for part in range(parts):
-        kept = line[parts * a + part]
-        line[parts * a + part] = line[parts * b + part]
-        line[parts * b + part] = kept
+    for part in range(parts()):
+        kept = line[parts() * a + part]
+        line[parts() * a + part] = line[parts() * b + part]
+        line[parts() * b + part] = kept
 
 
 @compiled
-def _pivoted(s, d, stride, t, width, size, k):
+def _pivoted(s, d, stride, t, width, size, k, parts):
     """Exchange rows so that the largest of the numbers of column k from the k-th on is its pivot; return the column."""
     line = shifted(d, k * stride)
     largest = k
     for r in range(k + 1, size):
-        if magnitude(line, r, s.parts) > magnitude(line, largest, s.parts):
+        if magnitude(line, r, parts) > magnitude(line, largest, parts):
             largest = r
     if largest != k:  # lines are columns: an exchange of rows is one within each line
         for i in range(size):
-            _exchange(shifted(d, i * stride), k, largest, s.parts)
+            _exchange(shifted(d, i * stride), k, largest, parts)
         for i in range(k):
-            _exchange(shifted(t, s.order[i] * width), k, largest, s.parts)
+            _exchange(shifted(t, s.order[i] * width), k, largest, parts)
         kept = s.order[k]
         s.order[k] = s.order[largest]
         s.order[largest] = kept
@@ -64,7 +76,7 @@ def _pivoted(s, d, stride, t, width, size, k):
 @compiled
 def _reciprocal(line, k, parts, part):
     """Return the real (0) or imaginary part (1) of one over number k of a line."""
-    if parts == 1:
+    if parts() == 1:
         return 1.0 / line[k]
     squared = line[2 * k] * line[2 * k] + line[2 * k + 1] * line[2 * k + 1]
     return line[2 * k] / squared if part == 0 else -line[2 * k + 1] / squared
@@ -72,25 +84,28 @@ def _reciprocal(line, k, parts, part):
 
 @compiled
 def _divided(s, line, k, own, stride, parts):
-    """Divide a line by its number k, from the quad after `own` on; `scratch` has all quotients, that of `own` too."""
-    real = spread(_reciprocal(line, k, parts, 0))
-    if parts == 1:
+    """Divide a line by its number k, from the quad after `own` on; `scratch` has all quotients, those of `own` too."""
+    first, real = quad(line, own), spread(_reciprocal(line, k, parts, 0))
+    if parts() == 1:
         for at in range(own, stride, 4):
-            set_quad(s.scratch, at, product_of(quad(line, at), real))
+            part = product_of(quad(line, at), real)
+            set_quad(s.scratch, at, part)
+            set_quad(line, at, part)
     else:
         imaginary = spread(_reciprocal(line, k, parts, 1))
         for at in range(own, stride, 4):
             part = quad(line, at)
-            set_quad(s.scratch, at, plus_product(product_of(part, real), times_i(part), imaginary))
-    for at in range(own + 4, stride, 4):
-        set_quad(line, at, quad(s.scratch, at))
+            part = plus_product(product_of(part, real), times_i(part), imaginary)
+            set_quad(s.scratch, at, part)
+            set_quad(line, at, part)
+    set_quad(line, own, first)
 
 
 @compiled
 def _reduced(s, line, k, first, width, parts):
     """Subtract number k of a line times a pivot's multipliers."""
-    real = spread(-line[parts * k])
-    if parts == 1:
+    real = spread(-line[parts() * k])
+    if parts() == 1:
         for at in range(first, width, 4):
             set_quad(line, at, plus_product(quad(line, at), real, quad(s.scratch, at)))
     else:  # (a + ib) z = a z + b (iz): two real factors, of the pairs and of the pairs turned by i
@@ -101,22 +116,21 @@ def _reduced(s, line, k, first, width, parts):
 
 
 @compiled
-def triangular(s, d, stride, t, width, size, first):
+def triangular(s, d, stride, t, width, size, first, parts):
     """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
     # A line holds a column, from the diagonal block down.  Step k divides column k by its pivot and subtracts multiples
     # of it from the later columns, and from the columns of the unit matrix, which become L^-1 P.  The multipliers are
     # kept in `scratch` from quad `own` on; `above` clears those of the rows up to the pivot's within this quad.
-    parts = s.parts
     for k in range(size):
         s.order[k] = k
     for k in range(size):
-        line = _pivoted(s, d, stride, t, width, size, k)
-        for part in range(parts):  # trials compare one pivot for each real unknown
-            s.pivot[parts * (first + k) + part] = magnitude(line, k, parts)
-        within = parts * k % 4
-        own = parts * k - within
+        line = _pivoted(s, d, stride, t, width, size, k, parts)
+        pivot, at = magnitude(line, k, parts), parts() * (first + k)
+        s.pivot[at], s.pivot[at + parts() - 1] = pivot, pivot  # trials compare one pivot for each real unknown
+        within = parts() * k % 4
+        own = parts() * k - within
         _divided(s, line, k, own, stride, parts)
-        set_quad(s.scratch, own, product_of(quad(s.scratch, own), quad(s.above, 4 * (within + parts - 1))))
+        set_quad(s.scratch, own, product_of(quad(s.scratch, own), quad(s.above, 4 * (within + parts() - 1))))
         for i in range(k + 1, size):
             _reduced(s, shifted(d, i * stride), k, own, stride, parts)
         for i in range(k):
@@ -132,32 +146,31 @@ def triangular(s, d, stride, t, width, size, first):
 @compiled
 def add_columns(parts, into, a, b, stride, depth):
     """Add the sum of a[k] b[k] over k to a quad, of columns of factors with a stride."""
-    if parts == 1:
+    if parts() == 1:
         add_products(1, 1, into, 0, a, 1, b, stride, depth)
     else:
         add_pair_products(1, 1, into, 0, a, 2, b, stride, depth)
 
 
 @compiled
-def inverted(s, d, stride, width, size):
+def inverted(s, d, stride, width, size, parts):
     """Replace U, above the diagonal of a supernode's columns, by its inverse."""
     # Column j of X = U^-1 from the columns before it: x_j = -X u_j / u_jj above the diagonal, 1 / u_jj on it.
-    parts = s.parts
     for j in range(size):
         line = shifted(d, j * stride)
-        real, imaginary = _reciprocal(line, j, parts, 0), _reciprocal(line, j, parts, 1)
+        real, imaginary = _reciprocal(line, j, parts, 0), _reciprocal(line, j, parts, 1) if parts() == 2 else 0.0
         for i in range(j):
-            if parts == 1:
+            if parts() == 1:
                 s.scratch[i] = -real * line[i]
             else:
                 s.scratch[2 * i] = imaginary * line[2 * i + 1] - real * line[2 * i]
                 s.scratch[2 * i + 1] = -imaginary * line[2 * i] - real * line[2 * i + 1]
         for at in range(0, width, 4):
             set_quad(line, at, spread(0.0))
-        for at in range(0, parts * j, 4):  # the quads with a row before j
+        for at in range(0, parts() * j, 4):  # the quads with a row before j
             add_columns(parts, shifted(line, at), s.scratch, shifted(d, at), stride, j)
-        line[parts * j] = real
-        if parts == 2:
+        line[parts() * j] = real
+        if parts() == 2:
             line[2 * j + 1] = imaginary
 
 
