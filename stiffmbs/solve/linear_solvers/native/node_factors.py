@@ -188,7 +188,7 @@ def rows_at_once(left):
 
 
 @compiled
-def multiplied(s, d, stride, u, width, size):
+def multiplied(s, d, stride, u, width, size, parts):
     """Multiply a supernode's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
     # In strips of two quads of columns, which are copied with the opposite sign: the product replaces its own factor.
     for column in range(0, width, 8):
@@ -201,8 +201,8 @@ def multiplied(s, d, stride, u, width, size):
         line = 0
         while line < size:
             rows = rows_at_once(size - line)
-            into, of = shifted(u, line * width + column), shifted(d, s.parts * line)
-            if s.parts == 2:
+            into, of = shifted(u, line * width + column), shifted(d, parts() * line)
+            if parts() == 2:
                 if two:
                     add_two_quads_of_pairs(rows, into, width, of, stride, s.scratch, 8, size)
                 else:
