@@ -43,7 +43,7 @@ class Integrator(Generic[E]):
         """Return the notes on inputs, velocity jumps and the engine."""
         return "; ".join(filter(None, (self._of_inputs, self._jumps.sentence(), self.engine.note())))
 
-    def on_constraints(self, reached: Reached) -> tuple[np.ndarray, np.ndarray]:
+    def on_constraints(self, reached: Reached) -> States:
         """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
         last = self.engine.last_step()
         return self.closed(reached.t, reached.state, last[0]) if last else reached.state

@@ -18,6 +18,7 @@ from ..events.narrow_inputs import narrower_than
 from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
 from ..reasons import OF_STATUS
+from ..stiff_rows import States
 from ..trajectory import SAME_TIME, Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration
 
@@ -106,9 +107,7 @@ def take_steps_to(dynamics: Dynamics, work: Integration, t: float, end: float, c
     refuse_beyond_limits(dynamics, end, work.q, work.u)
 
 
-def restart_after(
-    dynamics: Dynamics, work: Integration, t: float, aside: float, settings: RunSettings
-) -> tuple[np.ndarray, np.ndarray]:
+def restart_after(dynamics: Dynamics, work: Integration, t: float, aside: float, settings: RunSettings) -> States:
     """Restart just after a breakpoint of an input; return positions and velocities there before the restart.
 
     `t`: time just before the breakpoint, s. `aside`: distance of this time from the breakpoint, s.

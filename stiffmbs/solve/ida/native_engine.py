@@ -119,14 +119,12 @@ class NativeEngine(Engine):
 
     def begin_at(self, start: InitialValues, t: float) -> None:
         """See `Engine`."""
-        self.ida.error_norm.filter_always(self._order.held)
-        self._starts.begin(start, t, self.ida.begun, self._order.order)
+        self._starts.begin(start, t, self._order.order)
         self._take_up(t)
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float) -> Begun:
         """See `Engine`."""
-        self.ida.error_norm.filter_always(self._order.held)
-        found = self._starts.restart((q, u), t, ahead, stop, self.ida.begun, self._order.order)
+        found = self._starts.restart((q, u), t, ahead, stop, self._order.order)
         if found is None:  # a force is beyond its limits, unless this raises
             start = restarted(self._dynamics, t, q, u)
             refuse_beyond_limits(self._dynamics, t, start.q, start.u)
@@ -137,12 +135,12 @@ class NativeEngine(Engine):
 
     def _resume(self, newton: float) -> None:
         """Start again at the current unknowns, with a part of the tolerance that Newton's iteration may leave."""
-        self.ida.error_norm.filter_always(self._order.held)
         self._starts.resume(newton, self._order.order)
         self._take_up(self.ida.t)
 
     def _take_up(self, t: float) -> None:
         self.ida.begun_at(t)
+        self.ida.error_norm.filter_always(self._order.held)
         self._newton = self._starts.newton
         self.ida.correct_outputs(self._dynamics, self._starts.may_stiffen)
         self._order.begin(t, self.ida.history.count)

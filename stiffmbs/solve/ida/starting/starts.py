@@ -25,6 +25,7 @@ from ..statistics import failure_sentence
 
 if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
+    from ...stiff_rows import States
     from ..ida import NativeIda
 
 START_MODULE, RESTART_MODULE = (f"stiffmbs.solve.ida.starting.native.{name}" for name in ("start", "breakpoints"))
@@ -73,14 +74,11 @@ class Starts:
         self._has_events = system.n_event_functions > 0
         self.may_pass = not self._has_events and not len(system.term("acceleration", "f_lam").row)
 
-    def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> None:
-        """Start at consistent values.
-
-        `t`: s. `counted`: true if IDA's counters belong to this run. Raises ValueError if IDA reports an error.
-        """
+    def begin(self, start: InitialValues, t: float, highest_order: int) -> None:
+        """Start at consistent values and a time, s. Raises ValueError if IDA reports an error."""
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
-        _sound(_START.short_call(t, counted, highest_order, self._at))
+        _sound(_START.short_call(t, self._ida.begun, highest_order, self._at))
 
     def resume(self, newton: float, highest_order: int) -> None:
         """Start at IDA's current unknowns, with a part of the tolerance that Newton's iteration may leave."""
@@ -95,28 +93,20 @@ class Starts:
         fill(self._table, self._values)
         return self._at
 
-    def restart(
-        self,
-        state: tuple[np.ndarray, np.ndarray],
-        t: float,
-        ahead: float,
-        stop: float,
-        counted: bool,
-        highest_order: int,
-    ) -> Begun | None:
+    def restart(self, state: States, t: float, ahead: float, stop: float, highest_order: int) -> Begun | None:
         """Restart at consistent values after a state.
 
-        `state` of shapes (n_q,), (n_u,). `t`: s. `ahead`: least time of extrapolation past events simultaneous with
-        the one at t, s; 0 for none. `stop`: next time at which IDA stops, s. `counted`: true if IDA's counters belong to this run. Returns None, without a start, if
-        there are no consistent values or a force is beyond its limits.
+        `state`: q and u. `t`: s. `ahead`: least time of extrapolation past events simultaneous with
+        the one at t, s; 0 for none. `stop`: next time at which IDA stops, s. Returns None, without a start, if there are no consistent values or a
+        force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
-        if RESTARTED.short_call(t, ahead, stop, counted, highest_order, self.table) < 0:
+        if RESTARTED.short_call(t, ahead, stop, self._ida.begun, highest_order, self.table) < 0:
             return None
         cells = self._cells
         return Begun(float(cells["t"]), bool(cells["jumps"]), bool(cells["meets"]))
 
-    def advance(self, state: tuple[np.ndarray, np.ndarray], t: float, end: float, highest_order: int) -> bool:
+    def advance(self, state: States, t: float, end: float, highest_order: int) -> bool:
         """Integrate a state, which is overwritten, to a later time; False, with the state unchanged, if it needs a run."""
         if self._has_events:
             return False
