@@ -166,7 +166,9 @@ def largest_contradiction():
     """Return the contradiction of an acceleration, in quarter octaves of a percent, that is accepted."""
 
     def accepted(part):
-        return not len(overlooked.contradicting_rows(rows_of(1.0 - 0.01 * part, 1.0), np.ones(1), STEPS, np.zeros(1))[0])
+        return not len(
+            overlooked.contradicting_rows(rows_of(1.0 - 0.01 * part, 1.0), np.ones(1), STEPS, np.zeros(1))[0]
+        )
 
     return count_while(accepted, DOUBLES)
 

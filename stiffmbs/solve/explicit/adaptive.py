@@ -125,7 +125,8 @@ class AdaptiveSteps(Engine):
 
     def _looks(self, most: int) -> tuple[int, int]:
         """Return the step count, and the count of steps limited by stability, at which the next check is due."""
-        return self.work.count("steps") + most, self.work.count("stiff_steps") + held(most, self._may_leave)
+        held = max(1, most // CHECKS.now_and_then) if self._may_leave else most
+        return self.work.count("steps") + most, self.work.count("stiff_steps") + held
 
     def steps(self) -> int:
         """See `Engine`."""
@@ -156,8 +157,3 @@ class AdaptiveSteps(Engine):
         message = f"{trajectory.message}; {stiff_sentence(work)}"
         stopped = trajectory.outcome is Outcome.STOPPED
         return replace(trajectory, message=Reason.STIFF.of(message) if stopped else message)
-
-
-def held(most: int, may_leave: bool) -> int:
-    """Return the number of steps limited by stability that makes an early check due."""
-    return max(1, most // CHECKS.now_and_then) if may_leave else most

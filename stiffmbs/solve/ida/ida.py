@@ -53,7 +53,7 @@ class NativeIda:
     - `rtol`, `atol` of shape (n,): relative tolerance, and absolute tolerance of each unknown, greater than zero; a huge
       one excludes it from the error test and from Newton's convergence test.
     - `max_step`: largest step, s; 0 for none.
-    - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); IDA's own by default.
+    - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); that of the formula by default.
     - `formula`: BDF with IDA's own convergence test by default.
     - `reported`: unknowns returned at output times; all by default.
     - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call. `output` of shape (n,): interpolated or queried values.
@@ -307,7 +307,7 @@ class NativeIda:
         needed = may_stiffen or self._has_kinks
         for each in (self.output_correction, self._closing)[: 1 + bool(len(self._trace))]:
             if needed and not (self._formula.repeat or each.ready):
-                each.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
+                each.make_ready(self, self._session, self._matrix, dynamics)
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and add its steps to the history; return IDA's last flag."""

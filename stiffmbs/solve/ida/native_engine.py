@@ -58,7 +58,7 @@ class NativeEngine(Engine):
             equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
             reported=reported,
             formula=formula or BDF(control.predicted_residual),
-            renewal=control.renewal,
+            renewal=None if formula else control.renewal,
         )  # fmt: skip
         self._width, self.equations, self.matrix = len(reported), equations, matrix
         self._by_radau = formula is not None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
@@ -10,6 +12,9 @@ from ...dynamics.dynamics import Dynamics
 from ..linear_solvers.linear_solver import Assembled, LinearSolver
 from .native.layouts import OUTPUT_CORRECTION
 from .session import Session
+
+if TYPE_CHECKING:
+    from .ida import NativeIda
 
 VECTORS = "y", "yp", "defect", "correction", "weight", "size", "zero"
 
@@ -35,15 +40,9 @@ class OutputCorrection:
         """Return True if the memory exists."""
         return self._assembled is not None
 
-    def make_ready(
-        self, session: Session, matrix: LinearSolver, memory: int, y_vector: int, dynamics: Dynamics
-    ) -> None:
-        """Create the matrix, its solver and the vectors.
-
-        `session`: owner of these objects. `memory`: IDA memory. `y_vector`: vector like those of the iteration.
-        `dynamics`: dynamics of the same state.
-        """
-        libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
+    def make_ready(self, ida: NativeIda, session: Session, matrix: LinearSolver, dynamics: Dynamics) -> None:
+        """Create the matrix, its solver and the vectors. `session`: their owner. `dynamics`: dynamics of the same state."""
+        libraries, assembled = session.libraries, matrix.assembled(session, ida.y_vector)
         libraries.SUNLinSolInitialize(assembled.solver)
         vectors = {name: np.zeros(self._equations.n) for name in VECTORS}
         force_row, force_end = _rows_of_motion(self._equations)
@@ -55,7 +54,7 @@ class OutputCorrection:
         fill(
             self.table,
             {
-                "memory": memory,
+                "memory": ida.memory,
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "entries": assembled.values,
@@ -64,14 +63,7 @@ class OutputCorrection:
                 **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
             },
         )  # fmt: skip
-        self._assembled = assembled
-        self._vectors = {
-            **vectors,
-            "force_row": force_row,
-            "force_end": force_end,
-            "joint_row": joint_row,
-            "pose": pose,
-        }
+        self._assembled, self._vectors = assembled, vectors  # the table keeps all other arrays
 
     def note(self) -> str:
         """Return a sentence on states that could not be corrected; empty if there are none."""

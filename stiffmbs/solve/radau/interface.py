@@ -17,7 +17,6 @@ _SIGNATURES = {
     "set_first_step": ("IDASetInitStep", _SET),
     "set_longest_step": ("IDASetMaxStep", _SET),
     "set_newton": ("IDASetNonlinConvCoef", _SET),
-    "set_renewal": ("IDASetDeltaCjLSetup", _SET),
     "set_growth": ("IDASetEtaFixedStepBounds", "int32(int64, float64, float64)"),
     "set_order": ("IDASetMaxOrd", "int32(int64, int32)"),
     "set_tolerances": ("IDASVtolerances", "int32(int64, float64, int64)"),
