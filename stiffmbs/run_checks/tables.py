@@ -131,7 +131,7 @@ def _keeps_value(table: Table, side: int) -> bool:
 def _of_time(system: System, start: float, end: float) -> Iterator[Departure]:
     """Yield the departures from tables whose arguments depend on time alone."""
     given = given_to(system)
-    t = np.linspace(start, end, SAMPLES)
+    t = _samples(start, end)
     for group in system.groups:
         if not group.has_inputs:
             continue
@@ -151,6 +151,10 @@ def _laws(element: Element, given: Given) -> Iterator[Input]:
     """Yield the formulas and tables of time of an element."""
     for tree, text, values, tables in expressions_of(element, given):
         yield Input(tree, text, values, {label: TableRanges(table) for label, table in tables.items()})
+
+
+def _samples(start: float, end: float) -> np.ndarray:
+    return np.linspace(start, end, SAMPLES)
 
 
 def _departure(element: str, label: str, table: Table, t: np.ndarray, x: np.ndarray) -> Iterator[Departure]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -22,7 +22,7 @@ class Reached(NamedTuple):
     """Progress of an engine since its last report.
 
     - `times`, `rows`: output times (or ends of steps), and q and u there.
-    - `t`, `state`: current time, s, and its q and u.
+    - `t`, `state`: current time, s, and a function that returns its q and u up to the next step.
     - `fired`: event functions whose sign changes stopped the engine; empty if none did.
     - `failure`: reason of a failure; empty if there is none.
     - `passed`: number of breakpoints at which the engine restarted.
@@ -31,7 +31,7 @@ class Reached(NamedTuple):
     times: np.ndarray
     rows: States
     t: float
-    state: States
+    state: Callable[[], States]
     fired: tuple[int, ...] = ()
     failure: str = ""
     passed: int = 0

@@ -46,7 +46,7 @@ class Integrator(Generic[E]):
     def on_constraints(self, reached: Reached) -> States:
         """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
         last = self.engine.last_step()
-        return self.closed(reached.t, reached.state, last[0]) if last else reached.state
+        return self.closed(reached.t, reached.state(), last[0]) if last else reached.state()
 
     def closed(self, t: float, state: States, step: float) -> States:
         """Return q and u at the end of a step, s, projected without a change of stiff forces if it is long for them."""
@@ -84,11 +84,11 @@ class Integrator(Generic[E]):
                 self._breakpoints += reached.passed
                 yield reached if not reached.failure else self._explained(reached)
                 if reached.t < stops[0] and not (reached.fired or reached.failure):
-                    chattering.look(reached.t, *reached.state, self.engine.steps())
+                    chattering.look(reached.t, *reached.state(), self.engine.steps())
             if reached.failure:
                 return
             if reached.t < stops[0]:
-                chattering.note_event(reached.t, *reached.state, reached.fired[0] if reached.fired else -1)
+                chattering.note_event(reached.t, *reached.state(), reached.fired[0] if reached.fired else -1)
             before = t = reached.t
             if t < grid.end:
                 q, u = self.on_constraints(reached)
@@ -156,7 +156,7 @@ class Integrator(Generic[E]):
 
     def _explained(self, reached: Reached) -> Reached:
         """Replace a failure by one that names the chattering force, if there is one."""
-        jumping = self._hovering.failed(reached.t, *reached.state)
+        jumping = self._hovering.failed(reached.t, *reached.state())
         return reached._replace(failure=jumping or reached.failure)
 
     def _at_once(self, before: float, t: float, grid: Grid, state: States) -> Iterator[Reached]:
@@ -164,7 +164,7 @@ class Integrator(Generic[E]):
         times = grid.within(before, just_after(t))
         if len(times):
             q, u = (np.tile(part, (len(times), 1)) for part in state)
-            yield Reached(times, (q, u), t, state)
+            yield Reached(times, (q, u), t, lambda: state)
 
     def statistics(self) -> dict[str, int | float | str]:
         """Return the counters of the engine, and the numbers of restarts at breakpoints and events."""
@@ -205,7 +205,7 @@ def integrated(
             if pays and not pays(reached):
                 break
             if reached.t < grid.end and engine.steps() >= DIVERGENCE.followed_steps:
-                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *reached.state)
+                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *reached.state())
     return Trajectory(
         *rows.stored,
         ending.outcome,

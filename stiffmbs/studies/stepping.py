@@ -96,7 +96,7 @@ class StartedSteps:
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)
-        self._q[:], self._u[:] = last.state
+        self._q[:], self._u[:] = last.state()
 
 
 def sound(integrator: Integrator[NativeEngine], reached: Reached) -> Reached:

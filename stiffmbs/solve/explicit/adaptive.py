@@ -101,7 +101,7 @@ class AdaptiveSteps(Engine):
                 most = min(2 * most, work.capacity) if self._may_leave else most
                 look_at, held_at = self._looks(most)
             fired = tuple(work.fired()) if self._status == AT_EVENT else ()
-            yield Reached(*work.collect(), work.t, (work.q.copy(), work.u.copy()), fired)
+            yield Reached(*work.collect(), work.t, lambda: (work.q.copy(), work.u.copy()), fired)
             if reason:
                 raise SolverError(reason)
 

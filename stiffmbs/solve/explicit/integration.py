@@ -165,16 +165,18 @@ class Integration:
 
     def whole_steps(self) -> tuple[WholeSteps, ...]:
         """Return the steps that are to be checked after the run."""
-        begin, end, y = self._whole_steps.kept()
-        return (WholeSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
+        return self._whole_steps.kept(self._dynamics, self._states)
 
     def collect(self) -> tuple[np.ndarray, States]:
         """Return times, and q and u, of the rows of the last call, valid up to the next one; keep the ends of its steps."""
         count, before = self.count("rows"), self._collected
         self._cells["rows"], self._collected = 0, self.count("steps")
         self.step_times.append(self._ends[np.arange(before, self._collected) % self.capacity])
-        rows = self._row_y[:count]
-        return self._row_t[:count], (rows[:, : self._n_q], rows[:, self._n_q :])
+        return self._row_t[:count], self._states(self._row_y[:count])
+
+    def _states(self, rows: np.ndarray) -> States:
+        """Return q and u of rows of states."""
+        return rows[:, : self._n_q], rows[:, self._n_q :]
 
 
 _USE_BDF = "the scene is stiff; use solver bdf or radau"

@@ -93,11 +93,12 @@ class BDF:
 
     def connect(self, ida: NativeIda, session: Session, assembled: Assembled) -> None:
         """Give IDA the callbacks, the matrix, and the norm of error estimates."""
+        residual, jacobian = RESIDUAL.address, JACOBIAN.address
         ida.error_norm.take_place(ida, session, assembled)
-        ida.ask("IDAInit", RESIDUAL.address, 0.0, ida.y_vector, ida.yp_vector)
+        ida.ask("IDAInit", residual, 0.0, ida.y_vector, ida.yp_vector)
         ida.ask("IDASetUserData", ida.table)
         ida.ask("IDASetLinearSolver", assembled.solver, assembled.matrix)
-        ida.ask("IDASetJacFn", JACOBIAN.address)
+        ida.ask("IDASetJacFn", jacobian)
         ida.ask("IDASetMaxNumSteps", -1)  # IDASolve is called for one step at a time
         if self._predicted_residual:
             solver = ida.iteration.solver(ida, session)

@@ -223,7 +223,7 @@ class NativeEngine(Engine):
         fired = tuple(self.ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
         self._record(fired)
         states = self.equations.states(rows)
-        return Reached(times, states, self.ida.t, self.split(self.ida.y), fired, failure, passed)
+        return Reached(times, states, self.ida.t, lambda: self.split(self.ida.y), fired, failure, passed)
 
     def _worst(self) -> str:
         """Return a clause on the unknown with the largest error or Newton correction in the last step, if known."""
@@ -251,20 +251,19 @@ class NativeEngine(Engine):
 
     def split(self, y: np.ndarray) -> States:
         """Return q and u of all unknowns."""
-        (q,), (u,) = self.equations.states(y[None, self.equations.independent])
+        (q,), (u,) = self.equations.states(y[None, self.ida.reported])
         return q, u
 
     def whole_steps(self) -> tuple[WholeSteps, ...]:
         """See `Engine`."""
-        kept = self.ida.whole_steps.kept()
-        return (WholeSteps.of(self._dynamics, self.equations, *kept),) if len(kept[0]) else ()
+        return self.ida.whole_steps.kept(self._dynamics, self.equations.states)
 
     def refuse(self, reached: Reached, grid: Grid) -> None:
         """See `Engine`: steps that rounding governs, failures, and drift from the constraints end a run."""
         if failure := self._failure(reached, grid):
             raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
         if reached.t < grid.end and self.steps() >= RELAXATION.check_interval:
-            refuse_drift(self._dynamics, reached.t, *reached.state, self._settings)
+            refuse_drift(self._dynamics, reached.t, *reached.state(), self._settings)
 
     def _failure(self, reached: Reached, grid: Grid) -> str:
         """Return the reason why the run ends at this state, or an empty string."""
@@ -273,7 +272,7 @@ class NativeEngine(Engine):
         by_rounding = steps > CONTROL.enough_steps and (endless or governed_by_rounding(self.statistics()))
         if not (by_rounding or reached.failure):
             return ""
-        q, u = reached.state
+        q, u = reached.state()
         missing = no_value_ahead(dynamics, reached.t, q, u) if reached.failure else ""
         reason = missing or too_fine(dynamics, self._settings, reached.t, q)
         if reason or not reached.failure:

@@ -169,7 +169,7 @@ def first_check(module, name, check, counts):
 
 def at_a_step(engine):
     """Let an engine judge its steps."""
-    reached = Record(t=0.0, state=(np.zeros(1), np.zeros(1)), failure="")
+    reached = Record(t=0.0, state=lambda: (np.zeros(1), np.zeros(1)), failure="")
     engine._failure, engine._dynamics, engine._settings = lambda *_: "", None, None
     native_engine.NativeEngine.refuse(engine, reached, Grid(0.0, 1.0, None))
 
@@ -177,7 +177,7 @@ def at_a_step(engine):
 def in_a_run(engine):
     """Integrate to one step of an engine."""
     row = np.zeros((1, 1))
-    reached = Record(times=np.zeros(1), rows=(row, row), t=0.0, state=(row[0], row[0]))
+    reached = Record(times=np.zeros(1), rows=(row, row), t=0.0, state=lambda: (row[0], row[0]))
     more = {
         "last_step": nothing, "history": nothing, "recorded": tuple, "refuse": nothing, "whole_steps": nothing,
         "watch": Record(departures=nothing, refuse_departures=nothing),
@@ -195,7 +195,7 @@ def steps_that_rounding_governs():
     def engine(n):
         return Record(steps=lambda: 1000 * n, statistics=dict, _dynamics=None, _settings=None)
 
-    reached = Record(state=(np.zeros(1), np.zeros(1)), failure="", t=0.0)
+    reached = Record(state=lambda: (np.zeros(1), np.zeros(1)), failure="", t=0.0)
     grid = Grid(0.0, 1.0, None)
     with patch.multiple(native_engine, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
         return count_while(lambda n: not native_engine.NativeEngine._failure(engine(n), reached, grid), range(100))
