@@ -104,33 +104,17 @@ def _write_adams(path: Path, solution: Solution) -> None:
 
 
 WRITERS: dict[str, Callable[[Path, Solution], None]] = {
-    ".csv": _write_csv,
-    ".npz": _write_npz,
-    ".nc": _write_netcdf,
-    ".mat": write_matlab,
-    ".xlsx": write_excel,
-    ".parquet": write_parquet,
-    ".tab": _write_table,
-    ".res": _write_adams,
-}
-
-
+    ".csv": _write_csv, ".npz": _write_npz, ".nc": _write_netcdf, ".mat": write_matlab, ".xlsx": write_excel,
+    ".parquet": write_parquet, ".tab": _write_table, ".res": _write_adams,
+}  # fmt: skip
 WITH_ORIGIN = ".npz", ".nc", ".mat", ".xlsx", ".parquet"
 """Endings of files that hold the origin of the results themselves."""
 JINJA, MATPLOTLIB, MESHIO, XARRAY = (
     {"jinja2": "report"}, {"matplotlib": "plot"}, {"meshio": "flexible"}, {"xarray": "netcdf"},
 )  # fmt: skip
+OF_RESULTS = {".nc": XARRAY, ".xlsx": {"openpyxl": "tables"}, ".parquet": {"pyarrow": "tables"}}
 KINDS: dict[str, dict[str, dict[str, str]]] = {
-    "results": {
-        ".csv": {},
-        ".npz": {},
-        ".nc": XARRAY,
-        ".mat": {},
-        ".xlsx": {"openpyxl": "tables"},
-        ".parquet": {"pyarrow": "tables"},
-        ".tab": {},
-        ".res": {},
-    },
+    "results": {ending: OF_RESULTS.get(ending, {}) for ending in WRITERS},
     "cases": {".nc": XARRAY, ".csv": XARRAY, ".html": {**XARRAY, **JINJA}},
     "curves": {".csv": {}},
     "curves of an axle": {".csv": {}, ".html": JINJA},

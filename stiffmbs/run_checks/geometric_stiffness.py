@@ -12,8 +12,8 @@ from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..elements.spatial.flexible.layout import components, parts
 from ..notes import Note, NoteKind, Severity
-from .motion import some_instants
 from .parameters import RUN_CHECKS
+from .singular_poses import some_instants
 
 BEAM = "use a body of type: beam, or divide the body into several"
 DEFORMED = NoteKind(

@@ -14,6 +14,7 @@ from ..dynamics.storage import blocks, release
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, Severity
 from ..solve.events.refusals import DIVERGENCE, SPEED_OF_LIGHT, exponential, reaches
+from ..solve.suspect import most_violated
 from ..solve.trajectory import Trajectory
 from .parameters import RUN_CHECKS
 
@@ -132,9 +133,7 @@ def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> I
         return
     state = dynamics.state
     state.q[:], state.u[:] = rows.q[worst], rows.u[worst]
-    state.evaluate("motion", rows.t[worst])
-    gaps = np.abs(state.vector("motion", "C"))
-    joint, equation = system.equations[int(np.argmax(gaps))]
+    _, joint, equation = most_violated(dynamics, rows.t[worst], np.ones(system.n_c))
     first = int(np.argmax(violation > allowed))
     yield OPEN_JOINT(
         joint, equation=equation, violation=violation[worst], t=rows.t[worst], allowed=allowed, first=rows.t[first]

@@ -14,8 +14,8 @@ from ..redundancy.redundancy import Redundancy
 from ..redundancy.uniqueness import unproven
 from ..solve.reasons import Reason
 from ..solve.trajectory import Trajectory
-from .motion import some_instants
 from .parameters import RUN_CHECKS
+from .singular_poses import some_instants
 
 
 def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tuple[int, Note] | None:

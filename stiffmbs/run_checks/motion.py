@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..notes import Note, NoteKind, Severity
 from ..results.joint_angles import joint_angles
 from .parameters import RUN_CHECKS
-from .singular_poses import singular_passage_notes
+from .singular_poses import singular_passage_notes, some_instants
 
 OUT_OF_RANGE = NoteKind(
     "force-out-of-range",
@@ -121,8 +121,3 @@ def refuse_far_away(system: System) -> None:
             f"bodies.{system.bodies[body]}.position: found {farthest[body]:.3g} m in a mechanism of {size:.3g} m, with a rounding "
             f"error of {rounding:.1g} m, expected a position nearer to the origin"
         )
-
-
-def some_instants(count: int) -> np.ndarray:
-    """Return the numbers of evenly spaced ones of `count` output times, with the first and the last."""
-    return np.linspace(0, count - 1, min(count, RUN_CHECKS.most_instants)).astype(int)

@@ -84,15 +84,14 @@ def overlooked(
     if len(steps) < 2 or not system.has_laws:
         return None
     absolute = absolute_tolerances(system, settings)[system.n_q :]
-    pairs = contradicting_rows(
-        rows, system.mass, steps, RUN_CHECKS.overlooked_tolerances * absolute / np.diff(steps).max()
-    )
+    least = RUN_CHECKS.overlooked_tolerances * absolute / np.diff(steps).max()
+    pairs, off = contradicting_rows(rows, system.mass, steps, least)
     if not len(pairs):
         return None
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
     tolerance = absolute + settings.rtol * np.abs(rows.u[pairs])
-    off = _free_part(dynamics, rows, pairs, _contradictions(rows, pairs))
+    off = _free_part(dynamics, rows, pairs, off)
     over_step = np.abs(off) * step[:, None] / (RUN_CHECKS.overlooked_tolerances * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if len(found) <= RUN_CHECKS.most_instants:
@@ -113,13 +112,17 @@ def _ends_elsewhere(rows: OutputRows, k: int, tolerance: np.ndarray, again: Solv
     return found is None or not (np.abs(found - rows.u[k + 1]) <= tolerance).all()
 
 
-def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, least: np.ndarray) -> np.ndarray:
-    """Return the numbers of the rows that contradict the next one in the same step.
+def contradicting_rows(
+    rows: OutputRows, mass: np.ndarray, steps: np.ndarray, least: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of the rows that contradict the next one in the same step, and by which accelerations.
+
+    These are the mean rates of the velocities up to the next row minus the means of their accelerations.
 
     `mass` of shape (n_u,): weights of accelerations. `steps`: ends of steps, s. `least` of shape (n_u,): differences
     of accelerations up to which there is no contradiction.
     """
-    found, ends = [np.empty(0, dtype=int)], np.append(steps, -np.inf)
+    found, ends = [(np.empty(0, dtype=int), np.empty((0, len(mass))))], np.append(steps, -np.inf)
     for block in blocks(len(rows.t) - 1):
         both = slice(block.start, block.stop + 1)
         t, u, acceleration = rows.t[both], rows.u[both], rows.acceleration[both]
@@ -128,17 +131,11 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, le
         off = np.diff(u, axis=0) * (1.0 / np.diff(t))[:, None] - 0.5 * (acceleration[:-1] + acceleration[1:])
         size = acceleration**2 @ mass
         much = off**2 @ mass > RUN_CHECKS.overlooked_part**2 * np.fmax(size[:-1], size[1:])
-        found.append(block.start + np.flatnonzero(within & much & (np.abs(off) > least).any(axis=1)))
+        at = np.flatnonzero(within & much & (np.abs(off) > least).any(axis=1))
+        found.append((block.start + at, off[at]))
         release(rows.u, rows.acceleration)
-    return np.concatenate(found)
-
-
-def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:
-    """Return the mean rate of the velocities up to the next row minus the mean of their accelerations."""
-    following = pairs + 1
-    change = (rows.u[following] - rows.u[pairs]) / (rows.t[following] - rows.t[pairs])[:, None]
-    mean: np.ndarray = 0.5 * (rows.acceleration[pairs] + rows.acceleration[following])
-    return change - mean
+    pairs, contradictions = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return pairs, contradictions
 
 
 def _free_part(dynamics: Dynamics, rows: OutputRows, numbers: np.ndarray, off: np.ndarray) -> np.ndarray:

@@ -37,6 +37,11 @@ NOT_EXAMINED = NoteKind(
 )
 
 
+def some_instants(count: int, most: int | None = None) -> np.ndarray:
+    """Return the numbers of evenly spaced ones of `count` output times, with the first and the last; 400 at most by default."""
+    return np.linspace(0, count - 1, min(count, most or RUN_CHECKS.most_instants)).astype(int)
+
+
 class SingularPose(NamedTuple):
     """Nearly singular pose at a time, s: joints with nearly dependent equations, bodies of loops, and their poses in words."""
 
@@ -59,7 +64,7 @@ class PosesBetween:
         self._system, self._t, self._q = system, t, q
         self._state = State(system)
         self._scale = system.per_velocity(1.0, system.size)
-        norms = np.array([self._norms(k) for k in (*_few_of(len(t)), *suspects, 0)])
+        norms = np.array([self._norms(k) for k in (*some_instants(len(t), RUN_CHECKS.usual_poses), *suspects, 0)])
         self._least_norm = np.sqrt(RUN_CHECKS.dip) * norms.max(axis=0)
         in_loops = loops(system, self._state)
         inside = np.zeros(system.n_c, dtype=bool)
@@ -90,7 +95,11 @@ class PosesBetween:
     @cached_property
     def usual(self) -> float:
         """Largest smallest singular value at a few poses of the motion; 0 without equations that may be dependent."""
-        return max(self._least(k)[0] for k in _few_of(len(self._t))) if len(self._rows) else 0.0
+        return (
+            max(self._least(k)[0] for k in some_instants(len(self._t), RUN_CHECKS.usual_poses))
+            if len(self._rows)
+            else 0.0
+        )
 
     @property
     def products(self) -> float:
@@ -146,11 +155,6 @@ class PosesBetween:
         J /= self._scale
         J /= norms[:, None]
         return J
-
-
-def _few_of(count: int) -> list[int]:
-    few: list[int] = np.linspace(0, count - 1, min(count, RUN_CHECKS.usual_poses)).astype(int).tolist()
-    return few
 
 
 def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:

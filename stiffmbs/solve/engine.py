@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -21,18 +21,17 @@ if TYPE_CHECKING:
 class Reached(NamedTuple):
     """Progress of an engine since its last report.
 
-    - `times`, `rows` of shapes (k,), (k, values of a row): output times (or ends of steps), and the states there, which
-      `Engine.states` converts.
-    - `t`, `y`: current time, and all unknowns.
+    - `times`, `rows`: output times (or ends of steps), and q and u there.
+    - `t`, `state`: current time, s, and a function that returns its q and u up to the next step.
     - `fired`: event functions whose sign changes stopped the engine; empty if none did.
     - `failure`: reason of a failure; empty if there is none.
     - `passed`: number of breakpoints at which the engine restarted.
     """
 
     times: np.ndarray
-    rows: np.ndarray
+    rows: States
     t: float
-    y: np.ndarray
+    state: Callable[[], States]
     fired: tuple[int, ...] = ()
     failure: str = ""
     passed: int = 0
@@ -83,15 +82,6 @@ class Engine(Protocol):
     def refuse(self, reached: Reached, grid: Grid) -> None:
         """Raise a SolverError if the run is not to go on; it goes on by default."""
         return
-
-    def states(self, rows: np.ndarray) -> States:
-        """Return q and u of reported rows."""
-
-    def split(self, y: np.ndarray) -> States:
-        """Return q and u of all unknowns."""
-
-    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the reported row of a state, and all its unknowns."""
 
     def steps(self) -> int:
         """Return the number of steps of the run."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
 from typing import Generic, TypeVar
 
@@ -17,11 +18,11 @@ from .events.native.parameters import SEARCH
 from .events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from .events.restart import straight_on
 from .ida.native.parameters import LOOP
-from .step_logging import is_logged, log_step
 from .stiff_rows import States, projected
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory, just_after
 
 E = TypeVar("E", bound=Engine)
+LOGGER = logging.getLogger(__name__)
 
 
 class Integrator(Generic[E]):
@@ -42,10 +43,10 @@ class Integrator(Generic[E]):
         """Return the notes on inputs, velocity jumps and the engine."""
         return "; ".join(filter(None, (self._of_inputs, self._jumps.sentence(), self.engine.note())))
 
-    def on_constraints(self, reached: Reached) -> tuple[np.ndarray, np.ndarray]:
+    def on_constraints(self, reached: Reached) -> States:
         """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
-        state, last = self.engine.split(reached.y), self.engine.last_step()
-        return self.closed(reached.t, state, last[0]) if last else state
+        last = self.engine.last_step()
+        return self.closed(reached.t, reached.state(), last[0]) if last else reached.state()
 
     def closed(self, t: float, state: States, step: float) -> States:
         """Return q and u at the end of a step, s, projected without a change of stiff forces if it is long for them."""
@@ -83,13 +84,11 @@ class Integrator(Generic[E]):
                 self._breakpoints += reached.passed
                 yield reached if not reached.failure else self._explained(reached)
                 if reached.t < stops[0] and not (reached.fired or reached.failure):
-                    chattering.look(reached.t, *self.engine.split(reached.y), self.engine.steps())
+                    chattering.look(reached.t, *reached.state(), self.engine.steps())
             if reached.failure:
                 return
             if reached.t < stops[0]:
-                chattering.note_event(
-                    reached.t, *self.engine.split(reached.y), reached.fired[0] if reached.fired else -1
-                )
+                chattering.note_event(reached.t, *reached.state(), reached.fired[0] if reached.fired else -1)
             before = t = reached.t
             if t < grid.end:
                 q, u = self.on_constraints(reached)
@@ -157,15 +156,15 @@ class Integrator(Generic[E]):
 
     def _explained(self, reached: Reached) -> Reached:
         """Replace a failure by one that names the chattering force, if there is one."""
-        jumping = self._hovering.failed(reached.t, *self.engine.split(reached.y))
+        jumping = self._hovering.failed(reached.t, *reached.state())
         return reached._replace(failure=jumping or reached.failure)
 
     def _at_once(self, before: float, t: float, grid: Grid, state: States) -> Iterator[Reached]:
         """Yield a state for output times from `before`, excluded, to t, up to rounding such as that of 7 * 0.1 s."""
         times = grid.within(before, just_after(t))
         if len(times):
-            row, y = self.engine.unknowns(*state)
-            yield Reached(times, np.tile(row, (len(times), 1)), t, y)
+            q, u = (np.tile(part, (len(times), 1)) for part in state)
+            yield Reached(times, (q, u), t, lambda: state)
 
     def statistics(self) -> dict[str, int | float | str]:
         """Return the counters of the engine, and the numbers of restarts at breakpoints and events."""
@@ -183,14 +182,21 @@ def integrated(
 
     `pays`: called after each return of the engine. The run ends at `integrator.reached` when it returns False.
     """
-    engine, rows = integrator.engine, Rows.of(integrator.dynamics.system, grid)
+    engine, rows, logged = (
+        integrator.engine,
+        Rows.of(integrator.dynamics.system, grid),
+        LOGGER.isEnabledFor(logging.DEBUG),
+    )
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
-        for reached in integrator.run(start, grid, passing=not is_logged()):
+        for reached in integrator.run(start, grid, passing=not logged):
             # multipliers are in no error test: those of the output times follow from the accelerations at q and u
-            rows.extend(reached.times, *engine.states(reached.rows))
-            if is_logged() and (step := engine.last_step()):
-                log_step(reached.t, *step)
+            rows.extend(reached.times, *reached.rows)
+            if logged and (step := engine.last_step()):
+                LOGGER.debug(
+                    f"t = {reached.t:.6g} s, step {step[0]:.3g} s{f', order {step[1]}' if step[1] else ''}",
+                    extra={"step": step[0], "order": step[1]},
+                )
             watch(reached.t)
             grid.look(rows)
             engine.watch.refuse_departures()
@@ -199,7 +205,7 @@ def integrated(
             if pays and not pays(reached):
                 break
             if reached.t < grid.end and engine.steps() >= DIVERGENCE.followed_steps:
-                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *engine.split(reached.y))
+                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *reached.state())
     return Trajectory(
         *rows.stored,
         ending.outcome,

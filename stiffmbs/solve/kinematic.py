@@ -18,7 +18,7 @@ from ..notes import Note
 from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
 from .events.discontinuity import Jumps
-from .events.narrow_inputs import hidden_peak, narrower_than_output
+from .events.narrow_inputs import hidden_peak, narrower_than
 from .events.native.parameters import INDISTINCT, SEARCH
 from .events.refusals import refuse_beyond_limits
 from .explicit.native.parameters import CONTROL
@@ -80,7 +80,9 @@ def solve(
             watch(t)
             grid.look(rows)
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": ending.seconds}
-    narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    spacing = float(np.max(np.diff(times), initial=0.0))
+    missed = f"{spacing:.2g} s between output times; the results may not show its peaks: use a shorter output interval or --verify"
+    narrow = narrower_than(features, spacing, missed)
     hidden = narrow or hidden_peak(inputs_of(system), features, times)
     note = "; ".join(filter(None, (jumps.sentence(), hidden)))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)

@@ -42,14 +42,9 @@ class Traits:
 
     def ignored(self, settings: RunSettings) -> dict[str, object]:
         """Return the given settings that the solver does not read, with their values."""
-        given = {
-            name: getattr(settings, name) for name in RunSettings.model_fields if name in settings.model_fields_set
-        }
-        return {
-            name: value
-            for name, value in given.items()
-            if value is not None and name not in FOR_ALL_SOLVERS and name not in self.reads
-        }
+        unread = settings.model_fields_set.difference(FOR_ALL_SOLVERS, self.reads)
+        given = {name: getattr(settings, name) for name in RunSettings.model_fields if name in unread}
+        return {name: value for name, value in given.items() if value is not None}
 
 
 class Registered(NamedTuple):

@@ -102,9 +102,9 @@ def solve_subsystems(
     `solve`: for each of them. `start`: of the whole system.
     """
     found: list[Trajectory] = []
-    rows = None if grid.times is None else len(grid.times)
+    rows: int | None = None
     for k, subsystem in enumerate(subsystems):
-        within = grid if rows is None else _up_to(grid, rows)
+        within = grid if grid.times is None or rows is None else grid.up_to(float(grid.times[rows - 1]))
         if grid.monitor:
             alone = len(subsystems) == 1
             within = replace(within, monitor=_of_the_whole(grid.monitor, subsystem, start) if alone else None)
@@ -126,13 +126,6 @@ def _of_the_whole(monitor: Look, subsystem: Subsystem, start: InitialValues) -> 
         monitor(t, *whole)
 
     return look
-
-
-def _up_to(grid: Grid, rows: int) -> Grid:
-    assert grid.times is not None
-    if rows == len(grid.times):
-        return grid
-    return replace(grid, end=float(grid.times[rows - 1]), times=grid.times[:rows])
 
 
 def _share(watch: ProgressCallback, grid: Grid, k: int, count: int) -> ProgressCallback:

@@ -25,13 +25,13 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     """
     for ahead in _ahead():
         later = ahead * max(1.0, abs(t))
-        _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)
+        dynamics.state.q[:], dynamics.state.u[:] = dynamics.system.of_body.moved(q, later * u), u
         for term_set in TERM_SETS:
             dynamics.state.evaluate(term_set, t + later)
             name = _undefined(dynamics.system, dynamics.state.values[term_set], term_set)
             if name:
                 return f"; '{name}' has no finite value {'after' if ahead else 'at'} that time"
-    _move(dynamics, q, u)
+    dynamics.state.q[:], dynamics.state.u[:] = q, u
     if clause := _open(dynamics, t):
         return clause
     loads = ambiguous_loads_clause(dynamics, t, q, u)
@@ -47,10 +47,6 @@ def _ahead() -> Iterator[float]:
         ahead *= SEARCH.longer
 
 
-def _move(dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> None:
-    dynamics.state.q[:], dynamics.state.u[:] = q, u
-
-
 def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
     """Return the first element that wrote a value that is not finite."""
     wrong = np.flatnonzero(~np.isfinite(values[: system.n_values(term_set)]))
@@ -59,13 +55,19 @@ def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
 
 def _open(dynamics: Dynamics, t: float) -> str:
     """Return the joint with the largest violation if it exceeds an error of integration."""
-    system, state = dynamics.system, dynamics.state
-    state.evaluate("motion", t)
-    gaps = np.abs(state.vector("motion", "C")) * system.active
-    if not len(gaps) or gaps.max() < LEFT_OPEN:
-        return ""
-    joint, equation = system.equations[int(np.argmax(gaps))]
-    return f"; joint '{joint}' (equation {equation}) is violated by {gaps.max():.3g}"
+    gap, joint, equation = most_violated(dynamics, t, dynamics.system.active)
+    return "" if gap < LEFT_OPEN else f"; joint '{joint}' (equation {equation}) is violated by {gap:.3g}"
+
+
+def most_violated(dynamics: Dynamics, t: float, among: np.ndarray) -> tuple[float, str, str]:
+    """Return the largest violation of constraints of positions at the current state, with joint and equation.
+
+    `among`: mask of the equations. The violation is 0 without equations.
+    """
+    dynamics.state.evaluate("motion", t)
+    gaps = np.abs(dynamics.state.vector("motion", "C")) * among
+    row = int(np.argmax(gaps)) if len(gaps) else 0
+    return (float(gaps[row]), *dynamics.system.equations[row]) if len(gaps) else (0.0, "", "")
 
 
 def _hardest(dynamics: Dynamics, t: float) -> str:

@@ -152,6 +152,10 @@ class Grid:
             return breakpoints
         return np.union1d(breakpoints, self.stops[(self.stops > self.start) & (self.stops < self.end)])
 
+    def up_to(self, end: float) -> Grid:
+        """Return the grid up to a time."""
+        return replace(self, end=end, times=None if self.times is None else self.times[self.times <= end])
+
     def within(self, after: float, until: float) -> np.ndarray:
         """Return the output times in the interval (after, until]."""
         if self.times is None:

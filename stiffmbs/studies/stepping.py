@@ -96,7 +96,7 @@ class StartedSteps:
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)
-        self._q[:], self._u[:] = self._engine.split(last.y)
+        self._q[:], self._u[:] = last.state()
 
 
 def sound(integrator: Integrator[NativeEngine], reached: Reached) -> Reached:
@@ -242,7 +242,7 @@ class ImplicitSteps:
 
     def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u at a time within the last step; no error test of radau sees the drift of its polynomial."""
-        (q,), (u,) = self._engine.states(self._engine.ida.reported_at(t)[None])
+        (q,), (u,) = self._engine.equations.states(self._engine.ida.reported_at(t)[None])
         return projected(self._dynamics, t, (q, u), self._last_step()) if self._one_step else (q, u)
 
     def jump(self) -> None:
@@ -266,7 +266,7 @@ class FixedSteps:
         self._dynamics, self._settings, self._step = dynamics, settings, settings.step
         self._first, self._end, self._changes = t, t, dynamics.input_changes
         grid = Grid(t, t + settings.duration, None)
-        self._work = Integration(scheme_of(settings), dynamics, start, grid, settings)
+        self._work = Integration.of(scheme_of(settings), dynamics, start, grid, settings)
         self.q, self.u, self.time, self.length = self._work.q, self._work.u, t, 0.0
         self._t, self._at = t, self._work.at
         self._one, self._one_long, self._many = ONE_IN_LOOP.short_call, ONE_IN_LOOP.call, MANY_IN_LOOP.call

@@ -24,10 +24,10 @@ STEPS, HELD = 100_000, 2**40
 def started(name):
     """Integration of a scene at its start, without pivots, and its image."""
     job = prepare(EXAMPLE_SCENES[name], presolve=False)
-    work = Integration(DOP853, job.dynamics, job.start, job.grid, job.settings, 64)
+    work = Integration.of(DOP853, job.dynamics, job.start, job.grid, job.settings, 64)
     work.step_bound.follow(job.dynamics.input_features(job.grid.start, job.grid.end))
     job.dynamics.forget_pivots()
-    return job, work, image_of([work.memory.table])
+    return job, work, image_of([work.table])
 
 
 def mapped(words):
@@ -41,8 +41,8 @@ def mapped(words):
 @pytest.mark.parametrize("name", ["cart_pendulum", "half_car", "bouncing_ball", "stick_slip", "spatial_slider_crank"])
 def test_steps_in_an_image_are_equal_to_the_last_bit(name):
     job, work, image = started(name)
-    words, end, at = image.relocated(), 0.5 * (job.grid.start + job.grid.end), image.at(work.memory.table)
-    status = ADVANCE.call(end, STEPS, HELD, False, address(work.memory.table))
+    words, end, at = image.relocated(), 0.5 * (job.grid.start + job.grid.end), image.at(work.table)
+    status = ADVANCE.call(end, STEPS, HELD, False, address(work.table))
     place, n, expected = image.at(work.y) // 8, len(work.y), work.y.copy()
     del job, work, image
     gc.collect()  # an instance needs the code alone

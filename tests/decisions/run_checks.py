@@ -166,7 +166,9 @@ def largest_contradiction():
     """Return the contradiction of an acceleration, in quarter octaves of a percent, that is accepted."""
 
     def accepted(part):
-        return not len(overlooked.contradicting_rows(rows_of(1.0 - 0.01 * part, 1.0), np.ones(1), STEPS, np.zeros(1)))
+        return not len(
+            overlooked.contradicting_rows(rows_of(1.0 - 0.01 * part, 1.0), np.ones(1), STEPS, np.zeros(1))[0]
+        )
 
     return count_while(accepted, DOUBLES)
 
@@ -296,7 +298,7 @@ DECISIONS = {
     "run_checks.too_much": deformation_without_note,
     "run_checks.open": lambda: widest_gap(True),
     "run_checks.drifted": lambda: widest_gap(False),
-    "run_checks.most_instants": lambda: len(motion.some_instants(10**5)),
+    "run_checks.most_instants": lambda: len(singular_poses.some_instants(10**5)),
     "run_checks.unfollowed_part": lambda: largest_velocity_violation(1.0),
     "run_checks.unfollowed_velocity": lambda: largest_velocity_violation(0.0),
     "run_checks.poses": poses_between_two_outputs,

@@ -8,8 +8,6 @@ import pytest
 import stiffmbs
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.read_scene import read_scene
-from stiffmbs.solve.error_control import newton
-from stiffmbs.solve.ida.output_correction import OutputCorrection
 from stiffmbs.solve.ida.starting import starts
 from stiffmbs.tuning import parameters_of
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
@@ -34,8 +32,7 @@ def force_error(solution):
 @pytest.fixture
 def as_interpolated(monkeypatch):
     def switch_off():
-        for module in (newton, starts):
-            monkeypatch.setattr(module, "POLISHING", replace(parameters_of(module.POLISHING), amplified=np.inf))
+        monkeypatch.setattr(starts, "POLISHING", replace(parameters_of(starts.POLISHING), amplified=np.inf))
 
     return switch_off
 
@@ -66,8 +63,8 @@ def test_forces_balance_where_joints_are_closed(examples):
 def test_states_whose_forces_balance_are_left_alone(examples, monkeypatch):
     scene, rtol = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7 N/m")]), 1e-4
     seen = stiffmbs.run(scene, solver="bdf", rtol=rtol)
-    limit = OutputCorrection.limit
-    monkeypatch.setattr(OutputCorrection, "limit", lambda self, long, part, balanced: limit(self, long, part, 0.0))
+    bounds = starts.polishing_bounds
+    monkeypatch.setattr(starts, "polishing_bounds", lambda rtol: bounds(rtol) | {"balanced": 0.0})
     scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7 N/m"), ("name", "another")])
     corrected = stiffmbs.run(scene, solver="bdf", rtol=rtol)
     assert seen.solver["steps"] == corrected.solver["steps"]
@@ -77,8 +74,8 @@ def test_states_whose_forces_balance_are_left_alone(examples, monkeypatch):
 
 
 def test_correction_ends_where_forces_balance(monkeypatch):
-    limit = OutputCorrection.limit
-    monkeypatch.setattr(OutputCorrection, "limit", lambda self, long, part, balanced: limit(self, long, 0.0, balanced))
+    bounds = starts.newton_bounds
+    monkeypatch.setattr(starts, "newton_bounds", lambda rtol, fixed: bounds(rtol, fixed) | {"soft": 0.0})
     assert force_error(swinging(1.1e10, rtol=1e-4)) < 0.01  # no correction is small enough by its size
 
 
@@ -125,7 +122,9 @@ def test_every_matrix_serves(kind):
     def rows(matrix, long_step):
         dynamics = Dynamics(chain.system)
         ida = chain.native(matrix=matrix, state=dynamics.state)
-        ida.correct_outputs(dynamics, True, long_step, 1e-6, 0.0)
+        cells = ida.output_correction.cells
+        cells["long"], cells["enough"], cells["balanced"] = long_step, 1e-6, 0.0
+        ida.correct_outputs(dynamics, True)
         return chain.through(ida, times)[0]
 
     expected = rows(None, 0.0)

@@ -22,12 +22,12 @@ def test_rows_contradict_where_the_velocity_changes_otherwise_than_accelerations
     rows = SimpleNamespace(t=t, u=u, acceleration=a)
     mass, between = np.array([1.0, 2.0]), (t[1:] + t[:-1]) / 2
     none = np.zeros(2)
-    assert contradicting_rows(rows, mass, np.array([-1.0, 2.0]), none).tolist() == [19]
-    assert not len(contradicting_rows(rows, mass, np.array([-1.0, 2.0]), np.full(2, 1e4)))
-    assert not len(contradicting_rows(rows, mass, between, none)), "steps end inside the interval"
-    assert contradicting_rows(rows, mass, np.array([t[19] - 1e-6, t[20] + 1e-6]), none).tolist() == [19]
-    assert not len(contradicting_rows(rows, mass, np.array([t[19], t[20] + 1e-6]), none))
-    assert not len(contradicting_rows(rows, mass, np.array([t[19] - 1e-6, t[20]]), none))
+    assert contradicting_rows(rows, mass, np.array([-1.0, 2.0]), none)[0].tolist() == [19]
+    assert not len(contradicting_rows(rows, mass, np.array([-1.0, 2.0]), np.full(2, 1e4))[0])
+    assert not len(contradicting_rows(rows, mass, between, none)[0]), "steps end inside the interval"
+    assert contradicting_rows(rows, mass, np.array([t[19] - 1e-6, t[20] + 1e-6]), none)[0].tolist() == [19]
+    assert not len(contradicting_rows(rows, mass, np.array([t[19], t[20] + 1e-6]), none)[0])
+    assert not len(contradicting_rows(rows, mass, np.array([t[19] - 1e-6, t[20]]), none)[0])
 
 
 def test_the_work_of_a_smooth_power_is_of_fourth_order():

@@ -113,7 +113,7 @@ def finest_rtol(place, value):
 def smallest_velocity_jump():
     job = job_of("cart_pendulum")
     state = job.dynamics.state
-    state.u[:] = 1.0 / Jumps(job.dynamics, job.settings).scale
+    state.u[:] = 1.0 / Jumps(job.dynamics, job.settings).resolution[0]
 
     def is_noted(size):
         jumps = Jumps(job.dynamics, job.settings)

@@ -81,7 +81,7 @@ run: {rtol: 1e-6}
 
 def evaluations(sim):
     """Return the residuals and Jacobians of the last start."""
-    counted = sim._stepper._started._engine.ida.statistics()
+    counted = sim._stepper._started._engine.ida.counters.counted()
     return counted["residuals"] + counted["jacobians"]
 
 

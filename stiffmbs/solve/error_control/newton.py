@@ -1,15 +1,13 @@
-"""Newton tolerance and long-step threshold from the stiffness of the scene."""
+"""Stiffness of the scene, by which Newton's tolerance and long steps are chosen (`stiffmbs.solve.ida.starting.native.start`)."""
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from ...compile.system import System, Term
 from ...dynamics.dynamics import Dynamics
-from .native.parameters import NEWTON, POLISHING
 
 
 class Stiffness(NamedTuple):
@@ -20,23 +18,6 @@ class Stiffness(NamedTuple):
 
     of_positions: float
     of_velocities: float
-
-    @property
-    def fastest(self) -> float:
-        """Return the square of the fastest rate, 1/s^2."""
-        return max(self.of_positions, self.of_velocities * self.of_velocities)  # infinite where a power would raise
-
-    @property
-    def allowed_residual(self) -> float:
-        """Return the part of the error tolerance that causes no significant force."""
-        return NEWTON.soft / self.fastest if self.fastest > 0 else np.inf
-
-    @property
-    def long_step(self) -> float:
-        """Return the step size, s, above which states within a step must be corrected; may be infinite."""
-        by_position = math.sqrt(POLISHING.amplified / self.of_positions) if self.of_positions > 0 else math.inf
-        by_velocity = POLISHING.amplified / self.of_velocities if self.of_velocities > 0 else math.inf
-        return min(by_position, by_velocity)
 
 
 def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:

@@ -56,19 +56,18 @@ class Chattering:
         self._dynamics, self._end = dynamics, end
         farthest = min(max(JUMP.larger_move, CHATTERING.stays_within * rtol), CHATTERING.stays_within_at_most)
         self._reaches = (JUMP.larger_move, farthest)  # far from a jump, stiff forces may hide it
-        self._any = dynamics.system.n_event_functions > 0
         self._events: deque[float] = deque(maxlen=2 * CHATTERING.window + 1)
         self._count = 0
         self._mark: tuple[float, int] | None = None
 
-    def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Check the state from which the integrator starts.
+    def begin(self, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> None:
+        """Check the state from which the integrator starts, or another one.
 
-        Raises ChatteringError if a force drives the motion back from both sides of its discontinuity; names the
-        element.
+        Raises ChatteringError if a force drives the motion back from both sides of its discontinuity within `reach` (see
+        `sliding`); names the element.
         """
-        if self._any:
-            self.refuse(t, q, u, sliding(self._dynamics, t, q, u))
+        if sentence := _of_sliding(self._dynamics, t, q, u, reach):
+            raise ChatteringError(f"stopped at t = {t:.9g} s: {sentence}")
 
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
         """Check a state after `steps` steps of the run.
@@ -76,8 +75,8 @@ class Chattering:
         Raises ChatteringError if a force drives the motion back from both sides of its discontinuity. Raises
         SolverError if the steps are too short to reach the end.
         """
-        for reach in self._reaches if self._any else ():
-            self.refuse(t, q, u, sliding(self._dynamics, t, q, u, reach))
+        for reach in self._reaches:
+            self.begin(t, q, u, reach)
         since, before = self._mark or (t, steps)
         if steps - before < CHATTERING.steps_seen:
             self._mark = since, before
@@ -102,7 +101,7 @@ class Chattering:
             return
         first, middle, last = (self._events[k] for k in (0, CHATTERING.window, 2 * CHATTERING.window))
         if self._to_come(middle - first, last - middle) > CHATTERING.too_many:
-            self.refuse(t, q, u, sliding(self._dynamics, t, q, u))
+            self.begin(t, q, u)
             if loads := _of_loads(self._dynamics, t, q, u):
                 raise ChatteringError(f"stopped at t = {t:.9g} s: {loads}")
             name = (
@@ -130,11 +129,12 @@ class Chattering:
         growing = CHATTERING.least_power < power < CHATTERING.largest_power
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
-    def refuse(self, t: float, q: np.ndarray, u: np.ndarray, event_functions: np.ndarray) -> None:
-        """Raise a ChatteringError that names the first of some event functions, if there are any."""
-        if len(event_functions):
-            sentence = _of_loads(self._dynamics, t, q, u) or jump_sentence(self._dynamics, int(event_functions[0]))
-            raise ChatteringError(f"stopped at t = {t:.9g} s: {sentence}")
+
+def _of_sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> str:
+    """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
+    if not dynamics.system.n_event_functions or not len(found := sliding(dynamics, t, q, u, reach)):
+        return ""
+    return _of_loads(dynamics, t, q, u) or jump_sentence(dynamics, int(found[0]))
 
 
 def _of_loads(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
@@ -189,7 +189,7 @@ class HoveringEvents:
             noise = noise_of(self._dynamics, t, q, u, self._rtol, farthest)
             hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
             if len(hovering):
-                self._chattering.refuse(t, q, u, sliding(self._dynamics, t, q, u))
+                self._chattering.begin(t, q, u)
                 self.band[hovering] = noise[hovering]
 
     def taken_back(self, t: float) -> bool:
@@ -207,7 +207,4 @@ class HoveringEvents:
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
-        found = sliding(self._dynamics, t, q, u) if self.any else self.band
-        return (
-            (_of_loads(self._dynamics, t, q, u) or jump_sentence(self._dynamics, int(found[0]))) if len(found) else ""
-        )
+        return _of_sliding(self._dynamics, t, q, u)

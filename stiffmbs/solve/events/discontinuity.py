@@ -239,26 +239,18 @@ VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
 
 
 class Jumps:
-    """Jumps of velocities, and of positions, at the breakpoints of one run.
-
-    `scale`, of shape (n_u,): factors from velocities to m/s, the mechanism's size for angular ones. `least`: change, m/s
-    or m, that is no jump, whatever the velocities: the tolerance of the run.
-    """
+    """Jumps of velocities, and of positions, at the breakpoints of one run."""
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self._dynamics, self._settings = dynamics, settings
         self._messages: list[str] = []
 
     @cached_property
-    def scale(self) -> np.ndarray:
-        return self._kept[0]
+    def resolution(self) -> tuple[np.ndarray, float]:
+        """Factors from velocities to m/s, of shape (n_u,), with the mechanism's size for angular ones, and the tolerance of the run.
 
-    @cached_property
-    def least(self) -> float:
-        return self._kept[1]
-
-    @property
-    def _kept(self) -> tuple[np.ndarray, float]:
+        A change up to it, m/s or m, is no jump, whatever the velocities.
+        """
         return self._dynamics.kept("velocity jumps", self._settings, self._scale_and_least)
 
     def _scale_and_least(self) -> tuple[np.ndarray, float]:
@@ -269,26 +261,26 @@ class Jumps:
 
     def is_jump(self, change: np.ndarray) -> bool:
         """Return True if a change of velocities to those of the current state is a jump."""
-        largest = float((self.scale * np.abs(change)).max(initial=0.0))
-        if largest <= self.least:
+        (scale, least), after = self.resolution, self._dynamics.state.u
+        largest = float((scale * np.abs(change)).max(initial=0.0))
+        if largest <= least:
             return False
-        after = self._dynamics.state.u
-        fastest = np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)), initial=0.0)
+        fastest = np.max(scale * np.maximum(np.abs(after), np.abs(after - change)), initial=0.0)
         return largest > VELOCITY_JUMP.least * float(fastest)
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Note jumps from a state just before a breakpoint; the state of the dynamics is that just after it."""
-        system, state = self._dynamics.system, self._dynamics.state
+        system, state, (scale, least) = self._dynamics.system, self._dynamics.state, self.resolution
         move, change = system.move(q, state.q), state.u - u
-        if (self.scale * np.abs(move)).max(initial=0.0) > self.least and self._leads_on(t, q) > self.least:
-            k = int(np.argmax(self.scale * np.abs(move)))
+        if (scale * np.abs(move)).max(initial=0.0) > least and self._leads_on(t, q) > least:
+            k = int(np.argmax(scale * np.abs(move)))
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes positions jump ('{system.bodies[k // system.of_body.n_u]}' by {abs(move[k]):.3g}): no "
                 "motion leads there, and the results do not contain one; give the drive a continuous position"
             )
         elif self.is_jump(change):
-            k = int(np.argmax(self.scale * np.abs(change)))
-            part = abs(change[k]) * self.scale[k] / np.max(self.scale * np.maximum(np.abs(u), np.abs(state.u)))
+            k = int(np.argmax(scale * np.abs(change)))
+            part = abs(change[k]) * scale[k] / np.max(scale * np.maximum(np.abs(u), np.abs(state.u)))
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
                 f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...compile.inputs.ends import InputEnd
 from ...compile.inputs.features import INSTANTS, InputFeatures
 from ...compile.inputs.of_time import Input
 from ...dynamics.dynamics import Dynamics
@@ -29,15 +28,12 @@ class NarrowInputParameters:
 NARROW_INPUTS = tuned("narrow_inputs", NarrowInputParameters())
 
 
-def narrower_than_output(features: InputFeatures, spacing: float) -> str:
-    """Return a sentence on features shorter than the output spacing; empty if there are none."""
-    length, t = features.narrowest()
-    if length >= spacing:
+def narrower_than(features: InputFeatures, length: float, what: str) -> str:
+    """Return a sentence on features shorter than a length, s, of which `what` tells what follows; empty if there are none."""
+    narrowest, t = features.narrowest()
+    if narrowest >= length:
         return ""
-    return (
-        f"a prescribed motion or force has a feature of {length:.2g} s at t = {t:.6g} s, shorter than the {spacing:.2g} s "
-        "between output times; the results may not show its peaks: use a shorter output interval or --verify"
-    )
+    return f"a prescribed motion or force has a feature of {narrowest:.2g} s at t = {t:.6g} s, shorter than the {what}"
 
 
 def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndarray) -> str:
@@ -64,17 +60,6 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
     return ""
 
 
-def narrower_than_steps(features: InputFeatures, step: float, scheme: str) -> str:
-    """Return a sentence on features shorter than the fixed steps; empty if there are none."""
-    length, t = features.narrowest()
-    if length >= step:
-        return ""
-    return (
-        f"a prescribed motion or force has a feature of {length:.2g} s at t = {t:.6g} s, shorter than the steps of "
-        f"{step:.2g} s of {scheme}, which may not resolve it or miss it; use shorter steps, dopri5, dop853 or bdf"
-    )
-
-
 NEAR_INPUT_END = 1e-3
 """Fraction of the run before the end of an input in which a solver that stops is assumed to stop at that end."""
 
@@ -88,17 +73,12 @@ def solve_up_to_the_inputs_end(dynamics: Dynamics, grid: Grid, solve: Callable[[
     end = dynamics.input_end(grid.start, grid.end)
     if end is None:
         return solve(grid)
-    found = solve(_up_to(grid, end))
+    # values of the input still have their precision up to there
+    found = solve(grid.up_to(max(end.t - end.near, 0.5 * (grid.start + end.t))))
     own_end = found.outcome is Outcome.INTERRUPTED or (
         found.outcome is Outcome.STOPPED and end.t - _reached(found) > NEAR_INPUT_END * (grid.end - grid.start)
     )
     return found if own_end else replace(found, outcome=Outcome.STOPPED, message=end.sentence())
-
-
-def _up_to(grid: Grid, end: InputEnd) -> Grid:
-    """Return the grid up to the time at which values of the input still have their precision."""
-    last = max(end.t - end.near, 0.5 * (grid.start + end.t))
-    return replace(grid, end=last, times=None if grid.times is None else grid.times[grid.times <= last])
 
 
 def _reached(found: Trajectory) -> float:

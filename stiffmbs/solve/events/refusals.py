@@ -67,8 +67,9 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
 
 def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> Note:
     likely = suspect(dynamics, t, q.copy(), u.copy())
-    remedy = "look for a wrong sign of a stiffness, damping or force"
-    return Reason.DIVERGED.of(f"stopped at t = {t:.9g} s: the motion diverges: {what}{likely}; {remedy}")
+    return Reason.DIVERGED.of(
+        f"stopped at t = {t:.9g} s: the motion diverges: {what}{likely}; {Reason.DIVERGED.remedy}"
+    )
 
 
 def reaches(system: System) -> np.ndarray:

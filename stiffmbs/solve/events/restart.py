@@ -12,6 +12,7 @@ from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...tuning import tuned
+from ..suspect import most_violated
 
 
 @dataclass(frozen=True)
@@ -62,14 +63,11 @@ def _go_on(dynamics: Dynamics, status: int, t: float, clause: str = "") -> None:
 
 def _no_longer_redundant(dynamics: Dynamics, t: float, q: np.ndarray) -> str:
     """Return a clause on the omitted redundant equation with the largest violation; empty if all hold."""
-    system, state = dynamics.system, dynamics.state
-    state.q[:] = q
-    state.evaluate("position", t)
-    gaps = np.abs(state.vector("position", "C")) * (~system.active & system.holonomic)
-    row = int(np.argmax(gaps))
-    if not gaps[row] > LEFT_OPEN * min(1.0, system.size):
+    system = dynamics.system
+    dynamics.state.q[:] = q
+    gap, joint, equation = most_violated(dynamics, t, ~system.active & system.holonomic)
+    if not gap > LEFT_OPEN * min(1.0, system.size):
         return ""
-    joint, equation = system.equations[row]
     return (
         f"; joint '{joint}' (equation {equation}), left out because it is redundant near the start, is violated there"
     )

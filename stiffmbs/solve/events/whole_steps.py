@@ -5,17 +5,20 @@ The functions have no breakpoints that a search within steps could find. They ar
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
 
-from ...compile.equations import Equations
 from ...compile.machine.layout import Table, fill
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ..ida.native.parameters import LOOP
 from .native.layouts import WHOLE_STEPS
+
+if TYPE_CHECKING:
+    from ..stiff_rows import States
 
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 """Nodes that represent a whole step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
@@ -48,16 +51,6 @@ class WholeSteps(NamedTuple):
     u: np.ndarray
     full: bool = False
 
-    @classmethod
-    def of(
-        cls, dynamics: Dynamics, equations: Equations, begin: np.ndarray, end: np.ndarray, rows: np.ndarray
-    ) -> WholeSteps:
-        """Create the steps from the reported unknowns at the stored places, shape (n, places, n_reported)."""
-        q, u = equations.states(rows.reshape(-1, rows.shape[-1]))
-        shape = rows.shape[:2]
-        full = len(begin) >= _room(rows.shape[-1])
-        return cls(dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1), full)
-
     def at(self, step: np.ndarray, part: np.ndarray) -> Motion:
         """Return the states at parts (0 to 1) of steps, both of shape (m,)."""
         length = (self.end - self.begin)[step]
@@ -70,11 +63,6 @@ class WholeSteps(NamedTuple):
         return Motion(self.begin[step] + part * length, *found)
 
 
-def _room(width: int) -> int:
-    """Return the number of stored steps with this number of values of a state."""
-    return LOOP.most_items // (2 + len(WHOLE) * width)
-
-
 class WholeStepLog:
     """Memory for the steps of one integration, filled by compiled code; for none without Python functions.
 
@@ -83,8 +71,9 @@ class WholeStepLog:
     """
 
     def __init__(self, system: System, width: int) -> None:
-        room = _room(width) if system.has_functions else 0
-        self._rows, self._shape = np.empty((room, 2 + len(WHOLE) * width)), (len(WHOLE), width)
+        numbers = 2 + len(WHOLE) * width
+        room = LOOP.most_items // numbers if system.has_functions else 0
+        self._rows, self._width = np.empty((room, numbers)), width
         self.table = Table(WHOLE_STEPS)
         if room:
             arrays = {"n_nodes": len(WHOLE), "node": WHOLE, "width": width, "row": self._rows, "room": room}
@@ -95,7 +84,10 @@ class WholeStepLog:
         """Drop all steps."""
         self._cells["count"] = 0
 
-    def kept(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the begin and end of each stored step, and its states, shape (n, places, width)."""
+    def kept(self, dynamics: Dynamics, states: Callable[[np.ndarray], States]) -> tuple[WholeSteps, ...]:
+        """Return the stored steps, none without Python functions. `states`: returns q and u of rows of stored values."""
         rows = self._rows[: int(self._cells["count"])].copy()
-        return rows[:, 0], rows[:, 1], rows[:, 2:].reshape(len(rows), *self._shape)
+        if not len(rows):
+            return ()
+        q, u = (part.reshape(len(rows), len(WHOLE), -1) for part in states(rows[:, 2:].reshape(-1, self._width)))
+        return (WholeSteps(dynamics, rows[:, 0], rows[:, 1], q, u, full=len(rows) == len(self._rows)),)

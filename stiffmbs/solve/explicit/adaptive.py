@@ -20,7 +20,6 @@ from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
 from ..events.whole_steps import WholeSteps
 from ..reasons import OF_STATUS, Reason
-from ..stiff_rows import States
 from ..suspect import suspect
 from ..trajectory import Grid, History, Outcome, Trajectory
 from .integration import REASONS, Integration, stiff_sentence
@@ -54,7 +53,7 @@ class AdaptiveSteps(Engine):
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, first: int | None = None
     ) -> None:  # fmt: skip
-        self.work = Integration(scheme, dynamics, start, grid, settings)
+        self.work = Integration.of(scheme, dynamics, start, grid, settings)
         self.watch, self.due, self.failed = self.work.watch, False, False
         self._scheme, self._dynamics, self._settings, self._end = scheme, dynamics, settings, grid.end
         self._first, self._may_leave = min(first or self.work.capacity, self.work.capacity), first is not None
@@ -102,7 +101,7 @@ class AdaptiveSteps(Engine):
                 most = min(2 * most, work.capacity) if self._may_leave else most
                 look_at, held_at = self._looks(most)
             fired = tuple(work.fired()) if self._status == AT_EVENT else ()
-            yield Reached(*work.collect(), work.t, work.y, fired)
+            yield Reached(*work.collect(), work.t, lambda: (work.q.copy(), work.u.copy()), fired)
             if reason:
                 raise SolverError(reason)
 
@@ -126,22 +125,8 @@ class AdaptiveSteps(Engine):
 
     def _looks(self, most: int) -> tuple[int, int]:
         """Return the step count, and the count of steps limited by stability, at which the next check is due."""
-        return self.work.count("steps") + most, self.work.count("stiff_steps") + held(most, self._may_leave)
-
-    def states(self, rows: np.ndarray) -> States:
-        """See `Engine`."""
-        n_q = len(self.work.q)
-        return rows[:, :n_q], rows[:, n_q:]
-
-    def split(self, y: np.ndarray) -> States:
-        """See `Engine`."""
-        n_q = len(self.work.q)
-        return y[:n_q].copy(), y[n_q:].copy()
-
-    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `Engine`."""
-        y = np.concatenate([q, u])
-        return y, y
+        held = max(1, most // CHECKS.now_and_then) if self._may_leave else most
+        return self.work.count("steps") + most, self.work.count("stiff_steps") + held
 
     def steps(self) -> int:
         """See `Engine`."""
@@ -172,8 +157,3 @@ class AdaptiveSteps(Engine):
         message = f"{trajectory.message}; {stiff_sentence(work)}"
         stopped = trajectory.outcome is Outcome.STOPPED
         return replace(trajectory, message=Reason.STIFF.of(message) if stopped else message)
-
-
-def held(most: int, may_leave: bool) -> int:
-    """Return the number of steps limited by stability that makes an early check due."""
-    return max(1, most // CHECKS.now_and_then) if may_leave else most

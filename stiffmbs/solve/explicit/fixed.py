@@ -14,10 +14,11 @@ from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import CHATTERING, jump_sentence
 from ..events.discontinuity import JUMP, Jumps, sliding
-from ..events.narrow_inputs import narrower_than_steps
+from ..events.narrow_inputs import narrower_than
 from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
 from ..reasons import OF_STATUS
+from ..stiff_rows import States
 from ..trajectory import SAME_TIME, Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration
 
@@ -62,7 +63,10 @@ def solve_with_fixed_steps(
     exceed the given one.
     """
     features, jumps = dynamics.input_features(grid.start, grid.end), Jumps(dynamics, settings)
-    times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
+    times = grid.times
+    if times is None:
+        count = steps_between(grid.start, grid.end, settings.step)
+        times = grid.start + (grid.end - grid.start) * np.arange(count + 1) / count
     outputs = grid.before(times, features)
     stops = grid.with_stops(features.breakpoints) - grid.aside
     rows = Rows(len(work.q), len(work.u), len(times))
@@ -89,7 +93,8 @@ def solve_with_fixed_steps(
     statistics: dict[str, int | float | str] = {
         "scheme": work.scheme.name, "steps": steps, **work.scheme.work(steps), "seconds": ending.seconds,
     }  # fmt: skip
-    narrow = narrower_than_steps(features, settings.step, work.scheme.name)
+    missed = f"steps of {settings.step:.2g} s of {work.scheme.name}, which may not resolve it or miss it; use shorter steps, dopri5, dop853 or bdf"
+    narrow = narrower_than(features, settings.step, missed)
     note = "; ".join(filter(None, (note, jumps.sentence(), narrow, unresolved_growth(work), _cut(longest, settings))))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
@@ -102,9 +107,7 @@ def take_steps_to(dynamics: Dynamics, work: Integration, t: float, end: float, c
     refuse_beyond_limits(dynamics, end, work.q, work.u)
 
 
-def restart_after(
-    dynamics: Dynamics, work: Integration, t: float, aside: float, settings: RunSettings
-) -> tuple[np.ndarray, np.ndarray]:
+def restart_after(dynamics: Dynamics, work: Integration, t: float, aside: float, settings: RunSettings) -> States:
     """Restart just after a breakpoint of an input; return positions and velocities there before the restart.
 
     `t`: time just before the breakpoint, s. `aside`: distance of this time from the breakpoint, s.
@@ -144,8 +147,3 @@ def _cut(longest: float, settings: RunSettings) -> str:
     if "step" not in settings.model_fields_set or longest >= settings.step * (1 - SAME_TIME):
         return ""
     return f"step = {settings.step:.6g} s was reduced to {longest:.6g} s, to divide the output interval"
-
-
-def _own_steps(grid: Grid, step: float) -> np.ndarray:
-    count = steps_between(grid.start, grid.end, step)
-    return grid.start + (grid.end - grid.start) * np.arange(count + 1) / count

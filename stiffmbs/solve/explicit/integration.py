@@ -1,24 +1,32 @@
-"""State and memory of one Runge-Kutta integration, shared with compiled code."""
+"""State and memory of Runge-Kutta integrations, shared with compiled code."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from ...compile.machine.layout import address
+from ...compile.machine.layout import address, packed
 from ...compile.machine.native.statuses import NOT_FINITE, SINGULAR, STEP_TOO_SMALL, STIFF
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
+from ...dynamics.native.parameters import CONSISTENCY
 from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch, StepBound
-from ..events.whole_steps import WholeSteps
+from ..events.whole_steps import WholeStepLog, WholeSteps
+from ..ida.native.parameters import LOOP
+from ..stiff_rows import States
 from ..trajectory import Grid
+from .native.layouts import EXPLICIT
 from .native.parameters import CONTROL
-from .scheme import Scheme, StepMemory
+from .scheme import Scheme
+
+if TYPE_CHECKING:
+    from .linearly_implicit import LinearlyImplicit
 
 T = TypeVar("T")
 
@@ -40,43 +48,82 @@ class _Cell(Generic[T]):
 
 
 class Integration:
-    """State, stages and counters of one integration, and memory for the rows that one call stores.
+    """State, stages and counters of explicit steps of a scheme, and memory for the rows that one call stores.
 
     - `scheme`: Runge-Kutta scheme.
     - `capacity`: largest number of steps, and of rows, of one call.
-    - `step_times`: ends of the steps of each call.
+    - `step_times`: ends of the steps of each call of a run.
     - `watch`: event functions, and what the search for events has found.
     - `t`: current time, s. `q`, `u`: current positions and velocities, parts of `y`.
+    - `end_rates`, `lam` of shapes (n_q + n_u,), (n_c,): rates and multipliers at a start.
     - `span`: length of the last step, s.
     - `h`: length of the next step, s. `stable`: longest step that stability allows, s; 0 if not computed.
     - `eliminates`: True if accelerations are computed by elimination where its pivots are accurate, False if by LU
       always.
-    - `at`: address of the table for compiled code.
+    - `table`, `at`: table for compiled code (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`), and its address.
     - `atol` of shape (n_q + n_u,): absolute tolerances.
     """
 
     t, span, h, stable, eliminates = _Cell(float), _Cell(float), _Cell(float), _Cell(float), _Cell(bool)
 
-    def __init__(
-        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, capacity: int | None = None
-    ) -> None:  # fmt: skip
-        self.scheme = scheme
-        n_q = len(start.q)
-        self._memory = memory = dynamics.kept(
-            f"steps of {scheme.name}", capacity, lambda: StepMemory(scheme, dynamics, capacity)
-        )
-        self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
+    @classmethod
+    def of(
+        cls, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, capacity: int | None = None
+    ) -> Integration:  # fmt: skip
+        """Return the integration of a run, whose memory the dynamics keep, at consistent values."""
+        found = dynamics.kept(f"steps of {scheme.name}", capacity, lambda: cls(scheme, dynamics, capacity))
+        found._begin_run(start, grid, settings)
+        return found
+
+    def __init__(self, scheme: Scheme, dynamics: Dynamics, capacity: int | None) -> None:
+        system, eliminated = dynamics.system, dynamics.eliminated
+        self.scheme, self._dynamics, self._n_q, n = scheme, dynamics, system.n_q, system.n_q + system.n_u
+        self.capacity = capacity = capacity or max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
+        self.y, self.lam, self.atol = np.zeros(n), np.zeros(system.n_c), np.zeros(n)
+        self.q, self.u = self.y[: system.n_q], self.y[system.n_q :]
+        self._row_t, self._row_y, self._ends = (np.zeros(shape) for shape in (capacity, (capacity, n), capacity))
+        stages, self._whole_steps = np.zeros((scheme.extended, n)), WholeStepLog(system, n)
+        self.end_rates = stages[scheme.stages]
+        nothing = np.zeros(1, dtype=np.int64)
+        self._arrays = {
+            "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
+            "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
+            "tolerance": CONSISTENCY.position_tolerance, "atol": self.atol,
+            "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_first": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
+            "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
+            "times": np.empty(0), "capacity": capacity, "row_t": self._row_t, "row_y": self._row_y, "ends": self._ends,
+            "watch": nothing, "step_bound": nothing, "whole_steps": self._whole_steps.table,
+            "linear_step": 0, "linear": nothing, **self._linear_steps(),
+        }  # fmt: skip
+        self.table = packed(EXPLICIT, self._arrays)
+        self._cells, self.at, self._new = self.table.view(EXPLICIT.cells)[0], address(self.table), np.array(self.table)
+
+    def _linear_steps(self) -> dict[str, Any]:
+        """Return the entries of linearly implicit steps; none for explicit schemes."""
+        self._linear: LinearlyImplicit | None = None
+        if not self.scheme.columns:
+            return {}
+        from .linearly_implicit import LINEAR_STEP, LinearlyImplicit
+
+        self._linear = LinearlyImplicit(self._dynamics, self.scheme.columns)
+        return {"linear_step": LINEAR_STEP, "linear": self._linear.table}
+
+    def _begin_run(self, start: InitialValues, grid: Grid, settings: RunSettings) -> None:
+        """Forget earlier runs, and begin another one."""
+        dynamics, cells = self._dynamics, self._cells
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been collected
         self.step_bound, self.watch = StepBound(), EventSearch(dynamics.state)
         self.watch.end_steps_at_kinks()
         self.watch.follow_reactions(dynamics)
         self.watch.resolve(grid.end - grid.start)
-        memory.renew(self.watch.table, self.step_bound.table)
-        self.y, self.q, self.u, self.at = memory.y, memory.y[:n_q], memory.y[n_q:], address(memory.table)
-        self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
-        memory.atol[:] = self.atol
-        self._cells = cells = memory.cells
+        self.table[:] = self._new
+        self.table.link("watch", self.watch.table)
+        self.table.link("step_bound", self.step_bound.table)
+        self._whole_steps.forget()
+        if self._linear:
+            self._linear.forget()
+        self.atol[:] = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         cells["project"], cells["rtol"] = settings.projection, settings.rtol
         cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
         cells["shortest"] = CONTROL.shortest * (grid.end - grid.start)
@@ -85,28 +132,24 @@ class Integration:
         self.begin(start)
 
     @property
-    def memory(self) -> StepMemory:
-        """Arrays of the steps, and their table."""
-        return self._memory
-
-    @property
     def unresolved(self) -> float:
         """Time of the first linearly implicit step that did not resolve a growth, s; NaN if there is none."""
-        return self._memory.unresolved
+        return self._linear.unresolved if self._linear else math.nan
 
     def begin(self, start: InitialValues) -> None:
         """Restart from consistent values at the current time."""
-        memory, cells = self._memory, self._cells
+        cells = self._cells
         self.q[:], self.u[:] = start.q, start.u
-        memory.end_rates[self._n_q :] = start.acceleration
-        memory.lam[:] = start.lam
+        self.end_rates[self._n_q :] = start.acceleration
+        self.lam[:] = start.lam
         cells["started"], cells["last_error"], cells["at_event"] = 0, 0.0, 0
         cells["uncertain"], cells["distance"], cells["distance_of_end"] = 0, np.inf, np.inf
         self.watch.begin()
 
     def report_at(self, times: np.ndarray) -> None:
         """Report at these output times, s, from now on."""
-        self._memory.report_at(np.ascontiguousarray(times))
+        self.table.link("times", np.ascontiguousarray(times))
+        self._cells["n_times"], self._cells["next_time"] = len(times), 0
 
     def forget_rates(self) -> None:
         """Compute the rates at the current state again."""
@@ -122,15 +165,18 @@ class Integration:
 
     def whole_steps(self) -> tuple[WholeSteps, ...]:
         """Return the steps that are to be checked after the run."""
-        begin, end, y = self._memory.whole_steps.kept()
-        return (WholeSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
+        return self._whole_steps.kept(self._dynamics, self._states)
 
-    def collect(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and states of the rows of the last call, valid up to the next one; keep the ends of its steps."""
-        count, before, memory = self.count("rows"), self._collected, self._memory
+    def collect(self) -> tuple[np.ndarray, States]:
+        """Return times, and q and u, of the rows of the last call, valid up to the next one; keep the ends of its steps."""
+        count, before = self.count("rows"), self._collected
         self._cells["rows"], self._collected = 0, self.count("steps")
-        self.step_times.append(memory.ends[np.arange(before, self._collected) % self.capacity])
-        return memory.row_t[:count], memory.row_y[:count]
+        self.step_times.append(self._ends[np.arange(before, self._collected) % self.capacity])
+        return self._row_t[:count], self._states(self._row_y[:count])
+
+    def _states(self, rows: np.ndarray) -> States:
+        """Return q and u of rows of states."""
+        return rows[:, : self._n_q], rows[:, self._n_q :]
 
 
 _USE_BDF = "the scene is stiff; use solver bdf or radau"

@@ -54,4 +54,6 @@ def solve(
     if scheme.adaptive:
         engine = AdaptiveSteps(scheme, dynamics, start, grid, settings)
         return engine.ended(integrated(Integrator(dynamics, settings, engine), start, grid, watch))
-    return solve_with_fixed_steps(dynamics, Integration(scheme, dynamics, start, grid, settings), grid, settings, watch)
+    return solve_with_fixed_steps(
+        dynamics, Integration.of(scheme, dynamics, start, grid, settings), grid, settings, watch
+    )

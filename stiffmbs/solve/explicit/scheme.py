@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...compile.machine.layout import Table, packed
 from ...compile.machine.routines import Routine
-from ...dynamics.dynamics import Dynamics
-from ...dynamics.native.parameters import CONSISTENCY
-from ..events.whole_steps import WholeStepLog
-from ..ida.native.parameters import LOOP
-from .native.layouts import EXPLICIT, SCHEME
-
-if TYPE_CHECKING:
-    from .linearly_implicit import LinearlyImplicit
+from .native.layouts import SCHEME
 
 Row = Mapping[int, float]
 """Nonzero coefficients of a sum over stages, by stage."""
@@ -111,68 +103,3 @@ class Scheme:
 ADVANCE = Routine(
     "stiffmbs.solve.explicit.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)"
 )
-
-
-class StepMemory:
-    """Arrays of explicit steps for a scheme, and their table.
-
-    - `capacity`: largest number of steps, and of rows, of one call.
-    - `y`, `end_rates`, `lam` of shapes (n_q + n_u,), (n_q + n_u,), (n_c,): current state, its rates, and multipliers
-      at a start.
-    - `atol` of shape (n_q + n_u,).
-    - `row_t`, `row_y`, `ends` of shapes (capacity,), (capacity, n_q + n_u), (capacity,).
-    - `whole_steps`: steps that are checked after the run.
-    - `table`: addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
-    - `cells`: cells of the table by name.
-    """
-
-    def __init__(self, scheme: Scheme, dynamics: Dynamics, capacity: int | None = None) -> None:
-        system, eliminated = dynamics.system, dynamics.eliminated
-        n = system.n_q + system.n_u
-        self.capacity = capacity = capacity or max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
-        self.y, self.lam, self.atol = np.zeros(n), np.zeros(system.n_c), np.zeros(n)
-        self.row_t, self.row_y, self.ends = (np.zeros(shape) for shape in (capacity, (capacity, n), capacity))
-        stages, self.whole_steps = np.zeros((scheme.extended, n)), WholeStepLog(system, n)
-        self.end_rates = stages[scheme.stages]
-        nothing = np.zeros(1, dtype=np.int64)
-        self._arrays = {
-            "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
-            "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
-            "tolerance": CONSISTENCY.position_tolerance, "atol": self.atol,
-            "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_first": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
-            "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
-            "times": np.empty(0), "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
-            "watch": nothing, "step_bound": nothing, "whole_steps": self.whole_steps.table,
-            "linear_step": 0, "linear": nothing, **self._linear_steps(scheme, dynamics),
-        }  # fmt: skip
-        self.table = packed(EXPLICIT, self._arrays)
-        self.cells, self._new = self.table.view(EXPLICIT.cells)[0], np.array(self.table)
-
-    def _linear_steps(self, scheme: Scheme, dynamics: Dynamics) -> dict[str, Any]:
-        """Return the entries of linearly implicit steps; none for explicit schemes."""
-        self._linear: LinearlyImplicit | None = None
-        if not scheme.columns:
-            return {}
-        from .linearly_implicit import LINEAR_STEP, LinearlyImplicit
-
-        self._linear = LinearlyImplicit(dynamics, scheme.columns)
-        return {"linear_step": LINEAR_STEP, "linear": self._linear.table}
-
-    def renew(self, watch: Table, step_bound: Table) -> None:
-        """Reset all cells for a new run, and link its tables."""
-        self.table[:] = self._new
-        self.table.link("watch", watch)
-        self.table.link("step_bound", step_bound)
-        self.whole_steps.forget()
-        if self._linear:
-            self._linear.forget()
-
-    @property
-    def unresolved(self) -> float:
-        """Time of the first linearly implicit step that did not resolve a growth, s; NaN if there is none."""
-        return self._linear.unresolved if self._linear else math.nan
-
-    def report_at(self, times: np.ndarray) -> None:
-        """Report at these output times, s, from now on."""
-        self.table.link("times", times)
-        self.cells["n_times"], self.cells["next_time"] = len(times), 0

@@ -28,10 +28,6 @@ LOOK_AT_START, LOOK_WITHIN = together(
     look_within="int32(int64*)",
 )
 
-PART_BEFORE_EVENT = Routine(
-    "stiffmbs.solve.ida.native.over_event", "part_before_event", "float64(int64, int64, int64*)", level=SHORT
-)
-
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
@@ -97,26 +93,17 @@ class BDF:
 
     def connect(self, ida: NativeIda, session: Session, assembled: Assembled) -> None:
         """Give IDA the callbacks, the matrix, and the norm of error estimates."""
-        tables = ida.state_table, ida.equations_table
-        iteration, residual, jacobian = ida.iteration, RESIDUAL.address, JACOBIAN.address
-        ida.error_norm.take_place(
-            session, ida.memory, ida.y_vector, tables, assembled, iteration.table, ida.table,
-            PART_BEFORE_EVENT.address if ida.watch.n_event_functions else 0,
-        )  # fmt: skip
+        residual, jacobian = RESIDUAL.address, JACOBIAN.address
+        ida.error_norm.take_place(ida, session, assembled)
         ida.ask("IDAInit", residual, 0.0, ida.y_vector, ida.yp_vector)
         ida.ask("IDASetUserData", ida.table)
         ida.ask("IDASetLinearSolver", assembled.solver, assembled.matrix)
         ida.ask("IDASetJacFn", jacobian)
         ida.ask("IDASetMaxNumSteps", -1)  # IDASolve is called for one step at a time
         if self._predicted_residual:
-            of_prediction = {
-                "output_correction": ida.output_correction.table,
-                "state": tables[0],
-                "equations": tables[1],
-            }
-            solver = iteration.solver(session, ida.memory, ida.y_vector, of_prediction)
+            solver = ida.iteration.solver(ida, session)
             ida.ask("IDASetNonlinearSolver", solver)
-            iteration.take_over(session, solver)
+            ida.iteration.take_over(session, solver)
 
     def forget(self) -> None:
         """Do nothing: IDA forgets at its next start."""

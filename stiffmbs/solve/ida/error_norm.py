@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...compile.machine.layout import Table, fill
+from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import Routine
 from ..linear_solvers.linear_solver import Assembled
 from .native.layouts import ERROR_NORM, ITERATION
 from .operations import take_norm
 from .session import Session
 
+if TYPE_CHECKING:
+    from .ida import NativeIda
+
 NORM = Routine("stiffmbs.solve.ida.native.error_norm", "error_norm", "float64(int64*, int64)")
+PART_BEFORE_EVENT = Routine(
+    "stiffmbs.solve.ida.native.over_event", "part_before_event", "float64(int64, int64, int64*)", level=SHORT
+)
 
 
 class ErrorNorm:
@@ -26,17 +35,9 @@ class ErrorNorm:
         self.forget()
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
-    def take_place(
-        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray, ida: int, part_before_event: int
-    ) -> None:  # fmt: skip
-        """Replace the norm of IDA's vectors, which are cloned from this one.
-
-        `memory`: IDA memory. `tables`: tables of the state and of the equations, for compiled code. `assembled`: iteration matrix of
-        IDA and its solver. `iteration`: table of Newton's iteration (`stiffmbs.solve.ida.native.iteration`).
-        `ida`: address of the table of the loop. `part_before_event`: address of the function
-        `stiffmbs.solve.ida.native.over_event.part_before_event`; 0 without event functions.
-        """
-        libraries, (state, equations) = session.libraries, tables
+    def take_place(self, ida: NativeIda, session: Session, assembled: Assembled) -> None:
+        """Replace the norm of IDA's vectors, which are cloned from y. `assembled`: iteration matrix of IDA and its solver."""
+        libraries = session.libraries
         functions = {
             "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
             "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
@@ -46,15 +47,15 @@ class ErrorNorm:
         fill(
             self.table,
             {
-                "memory": memory, **{name: libraries.address(function) for name, function in functions.items()},
-                "iteration": iteration, "state": state, "equations": equations,
+                "memory": ida.memory, **{name: libraries.address(function) for name, function in functions.items()},
+                "iteration": ida.iteration.table, "state": ida.state_table, "equations": ida.equations_table,
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "at_change": session.vector(self._change), "change": self._change,
                 "at_filtered": session.vector(self._filtered), "filtered": self._filtered,
-                "ida": ida, "part_before_event": part_before_event,
+                "ida": ida.table, "part_before_event": PART_BEFORE_EVENT.address if ida.watch.n_event_functions else 0,
             },
         )  # fmt: skip
-        take_norm(session, y_vector, NORM.address, self.table)
+        take_norm(session, ida.y_vector, NORM.address, self.table)
 
     def filter_always(self, asked: bool) -> None:
         """Filter all error estimates, or only those after many failed error tests."""
@@ -85,17 +86,17 @@ class Iteration:
         self._cells = self.table.view(ITERATION.cells)[0]
         self._cells["cj"] = np.inf
 
-    def solver(self, session: Session, memory: int, y_vector: int, tables: dict[str, np.ndarray]) -> int:
+    def solver(self, ida: NativeIda, session: Session) -> int:
         """Create the solver; IDA sets its own test when the solver is attached, so `take_over` must follow."""
         libraries = session.libraries
-        made = libraries.SUNNonlinSol_Newton(y_vector, session.context)
+        made = libraries.SUNNonlinSol_Newton(ida.y_vector, session.context)
         fill(
             self.table,
             {
-                "n": self._n, "has_kinks": int(self._has_kinks), "memory": memory,
+                "n": self._n, "has_kinks": int(self._has_kinks), "memory": ida.memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),
                 "iteration_of": libraries.address("SUNNonlinSolGetCurIter"), "time_of": libraries.address("IDAGetCurrentTime"),
-                **tables,
+                "output_correction": ida.output_correction.table, "state": ida.state_table, "equations": ida.equations_table,
             },
         )  # fmt: skip
         return session.keep(made, libraries.SUNNonlinSolFree, "a nonlinear solver")

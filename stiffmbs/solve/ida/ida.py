@@ -15,8 +15,6 @@ from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
-from ...model.settings import RunSettings
-from ..error_control.error_test import ErrorControl
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeStepLog
 from ..linear_solvers.linear_solver import LinearSolver
@@ -55,12 +53,12 @@ class NativeIda:
     - `rtol`, `atol` of shape (n,): relative tolerance, and absolute tolerance of each unknown, greater than zero; a huge
       one excludes it from the error test and from Newton's convergence test.
     - `max_step`: largest step, s; 0 for none.
-    - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); IDA's own by default.
+    - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); that of the formula by default.
     - `formula`: BDF with IDA's own convergence test by default.
     - `reported`: unknowns returned at output times; all by default.
     - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call. `output` of shape (n,): interpolated or queried values.
     - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
-    - `whole_steps`: steps that are checked after the run.
+    - `whole_steps`: steps that are checked after the run. `counters`: counters since the first start.
     - `words`, `table`: table for compiled code, and its address.
     - `state_table`, `equations_table`: tables of the state and of the equations.
     - `begun`: True if IDA was started since it was created or reset.
@@ -107,7 +105,7 @@ class NativeIda:
         self.words = self._packed()
         self.table, self.cells = self.words.ctypes.data, self.words.view(NATIVE_IDA.cells)[0]
         formula.connect(self, session, self._assembled)
-        self._statistics = Statistics(session.libraries, self.memory, formula.counters(self.memory, session.libraries))
+        self.counters = Statistics(session.libraries, self.memory, formula.counters(self.memory, session.libraries))
         self._flag, self.begun = 0, False
         self._batch = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
         self._look = self._usual_batch = self._batch
@@ -196,7 +194,7 @@ class NativeIda:
         """Reset counters, history and pivots, as before the first start."""
         self.begun, self._look, self.cells["next_size"] = False, self._usual_batch, 0.0
         self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
-        self._statistics.forget()
+        self.counters.forget()
         corrections = self.output_correction, self._closing
         for each in (self.history, self.whole_steps, *corrections, self.error_norm, self._formula):
             each.forget()
@@ -206,12 +204,6 @@ class NativeIda:
         """Note a start or restart by compiled code."""
         self.history.begin(t)
         self.begun, self._flag = True, 0
-
-    def starts(self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl) -> Starts:
-        """Return compiled starts."""
-        from .starting.starts import Starts
-
-        return Starts(dynamics, equations, self, self._statistics, settings, control)
 
     def advance(self, times: np.ndarray, stop: float, y_out: np.ndarray) -> tuple[int, Status]:
         """Integrate towards `stop`, and report at output times.
@@ -285,17 +277,13 @@ class NativeIda:
         """
         return self.watch.found[: self.watch.n_event_functions].copy()
 
-    def counted(self) -> dict[str, int]:
-        """Return the counters since the first start (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
-        return self._statistics.total()
-
-    def statistics(self) -> dict[str, int]:
-        """Return the counters since the first start, and the order of the last step."""
-        return self._statistics.counted()
-
     def worst(self) -> tuple[int, float]:
         """Return the unknown with the largest estimated error in the last step, and that error in tolerances."""
-        errors, weights = (self.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
+        found = []
+        for function in ("IDAGetEstLocalErrors", "IDAGetErrWeights"):
+            self.ask(function, self.output_vector)
+            found.append(self.output.copy())
+        errors, weights = found
         weighted = np.multiply(np.abs(errors), weights, out=np.zeros_like(weights), where=weights > 0)
         k = int(np.argmax(weighted))
         return k, float(weighted[k])
@@ -314,23 +302,12 @@ class NativeIda:
         if flag < 0:
             raise ValueError(failure_sentence(flag))
 
-    def answer(self, function: str, *arguments: Any) -> np.ndarray:
-        """Call a function of IDA that fills a vector, and return a copy of it."""
-        self.ask(function, *arguments, self.output_vector)
-        return self.output.copy()
-
-    def correct_outputs(
-        self, dynamics: Dynamics, may_stiffen: bool, long_step: float, part: float, balanced: float
-    ) -> None:
-        """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`).
-
-        `may_stiffen`: true if that may become finite or smaller before the next start.
-        """
+    def correct_outputs(self, dynamics: Dynamics, may_stiffen: bool) -> None:
+        """Correct states within long steps. `may_stiffen`: true if steps may be long for forces before the next start."""
         needed = may_stiffen or self._has_kinks
         for each in (self.output_correction, self._closing)[: 1 + bool(len(self._trace))]:
             if needed and not (self._formula.repeat or each.ready):
-                each.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
-        self.output_correction.limit(long_step, part, balanced)
+                each.make_ready(self, self._session, self._matrix, dynamics)
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and add its steps to the history; return IDA's last flag."""

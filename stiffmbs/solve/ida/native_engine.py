@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +16,7 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ..engine import Begun, Engine, Reached
 from ..error_control.error_test import ErrorControl
-from ..error_control.native.parameters import NEWTON, POLISHING
-from ..error_control.newton import Stiffness
+from ..error_control.native.parameters import NEWTON
 from ..error_control.precision import governed_by_rounding, too_fine
 from ..error_control.relaxation import RELAXATION, refuse_drift
 from ..error_control.stability_limit import StabilityLimitDetection
@@ -59,14 +58,13 @@ class NativeEngine(Engine):
             equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
             reported=reported,
             formula=formula or BDF(control.predicted_residual),
-            renewal=control.renewal,
+            renewal=None if formula else control.renewal,
         )  # fmt: skip
         self._width, self.equations, self.matrix = len(reported), equations, matrix
         self._by_radau = formula is not None
         self.recorder: StepRecorder | None = None
-        self._rtol, self._settings = settings.rtol, settings
-        self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
-        self._dynamics = dynamics
+        self._settings = settings
+        self._dynamics, self._control = dynamics, control
         self.watch = self.ida.watch
         self.watch.follow_reactions(dynamics)
         self._order = StabilityLimitDetection(
@@ -81,7 +79,7 @@ class NativeEngine(Engine):
             self.ida.keep_steps(False)
             self.recorder = None
         self._order.forget()
-        self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
+        self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def begin_run(self, features: InputFeatures, grid: Grid) -> None:
@@ -111,12 +109,6 @@ class NativeEngine(Engine):
         self.ida.keep_steps(False)
         return recorder.pieces(self.equations)
 
-    def _record_start(self, t: float) -> None:
-        if self.recorder:
-            row = self.present()
-            row[0] = t
-            self.recorder.begin(row)
-
     def _record(self, fired: tuple[int, ...]) -> None:
         """Move the steps since the last return of IDA to the record."""
         if self.recorder:
@@ -127,14 +119,12 @@ class NativeEngine(Engine):
 
     def begin_at(self, start: InitialValues, t: float) -> None:
         """See `Engine`."""
-        self.ida.error_norm.filter_always(self._order.held)
-        self._starts.begin(start, t, self.ida.begun, self._order.order)
+        self._starts.begin(start, t, self._order.order)
         self._take_up(t)
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, stop: float) -> Begun:
         """See `Engine`."""
-        self.ida.error_norm.filter_always(self._order.held)
-        found = self._starts.restart((q, u), t, ahead, stop, self.ida.begun, self._order.order)
+        found = self._starts.restart((q, u), t, ahead, stop, self._order.order)
         if found is None:  # a force is beyond its limits, unless this raises
             start = restarted(self._dynamics, t, q, u)
             refuse_beyond_limits(self._dynamics, t, start.q, start.u)
@@ -145,27 +135,17 @@ class NativeEngine(Engine):
 
     def _resume(self, newton: float) -> None:
         """Start again at the current unknowns, with a part of the tolerance that Newton's iteration may leave."""
-        self.ida.error_norm.filter_always(self._order.held)
         self._starts.resume(newton, self._order.order)
         self._take_up(self.ida.t)
 
     def _take_up(self, t: float) -> None:
         self.ida.begun_at(t)
-        self._stiffness, self._newton = self._starts.found()
-        self._follow_stiffness(t)
-        self._record_start(t)
-
-    def _follow_stiffness(self, t: float) -> None:
-        """Set the correction of states within long steps, and the monitor of vibrations, by the stiffness."""
-        stiffness = self._stiffness
-        self.ida.correct_outputs(
-            self._dynamics,
-            self._starts.may_stiffen,
-            stiffness.long_step,
-            max(stiffness.allowed_residual, NEWTON.precision / self._rtol),
-            POLISHING.unbalanced * self._rtol,
-        )
+        self.ida.error_norm.filter_always(self._order.held)
+        self._newton = self._starts.newton
+        self.ida.correct_outputs(self._dynamics, self._starts.may_stiffen)
         self._order.begin(t, self.ida.history.count)
+        if self.recorder:
+            self.recorder.begin(self.present())
 
     def _adapt(self, stop: float) -> None:
         """Adapt Newton's tolerance and the highest order between two calls."""
@@ -181,7 +161,7 @@ class NativeEngine(Engine):
 
         Calls of a few steps, as those of a simulation, are counted together up to the number of steps of a call in a run.
         """
-        counted = self.ida.counted()
+        counted = self.ida.counters.total()
         steps = counted["steps"] - self._counted["steps"]
         if steps < self.ida.usual_steps:
             return
@@ -224,7 +204,7 @@ class NativeEngine(Engine):
         served, status = self.ida.advance_past(starts, times, np.array(stops), self._order.order, rows)
         passed, steps = starts.passed
         if passed:
-            self._stiffness, self._newton = starts.found()
+            self._newton = starts.newton
             self._order.begin(starts.t, before + steps)
         return served, status, passed
 
@@ -242,7 +222,8 @@ class NativeEngine(Engine):
         failure = f"{self.ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         fired = tuple(self.ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
         self._record(fired)
-        return Reached(times, rows, self.ida.t, self.ida.y, fired, failure, passed)
+        states = self.equations.states(rows)
+        return Reached(times, states, self.ida.t, lambda: self.split(self.ida.y), fired, failure, passed)
 
     def _worst(self) -> str:
         """Return a clause on the unknown with the largest error or Newton correction in the last step, if known."""
@@ -264,34 +245,25 @@ class NativeEngine(Engine):
 
     @cached_property
     def _starts(self) -> Starts:
-        return self._make_starts()
+        from .starting.starts import Starts
 
-    def states(self, rows: np.ndarray) -> States:
-        """See `Engine`."""
-        return self.equations.states(rows)
+        return Starts(self._dynamics, self.equations, self.ida, self._settings, self._control)
 
     def split(self, y: np.ndarray) -> States:
-        """See `Engine`."""
-        (q,), (u,) = self.equations.states(y[None, self.equations.independent])
+        """Return q and u of all unknowns."""
+        (q,), (u,) = self.equations.states(y[None, self.ida.reported])
         return q, u
-
-    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `Engine`."""
-        y = np.zeros(self.equations.n)
-        y[self.equations.independent] = self.equations.coordinates.state(q, u)
-        return y[self.equations.independent], y
 
     def whole_steps(self) -> tuple[WholeSteps, ...]:
         """See `Engine`."""
-        kept = self.ida.whole_steps.kept()
-        return (WholeSteps.of(self._dynamics, self.equations, *kept),) if len(kept[0]) else ()
+        return self.ida.whole_steps.kept(self._dynamics, self.equations.states)
 
     def refuse(self, reached: Reached, grid: Grid) -> None:
         """See `Engine`: steps that rounding governs, failures, and drift from the constraints end a run."""
         if failure := self._failure(reached, grid):
             raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
         if reached.t < grid.end and self.steps() >= RELAXATION.check_interval:
-            refuse_drift(self._dynamics, reached.t, *self.split(reached.y), self._settings)
+            refuse_drift(self._dynamics, reached.t, *reached.state(), self._settings)
 
     def _failure(self, reached: Reached, grid: Grid) -> str:
         """Return the reason why the run ends at this state, or an empty string."""
@@ -300,7 +272,7 @@ class NativeEngine(Engine):
         by_rounding = steps > CONTROL.enough_steps and (endless or governed_by_rounding(self.statistics()))
         if not (by_rounding or reached.failure):
             return ""
-        q, u = self.split(reached.y)
+        q, u = reached.state()
         missing = no_value_ahead(dynamics, reached.t, q, u) if reached.failure else ""
         reason = missing or too_fine(dynamics, self._settings, reached.t, q)
         if reason or not reached.failure:
@@ -324,11 +296,11 @@ class NativeEngine(Engine):
 
     def statistics(self) -> dict[str, int | float | str]:
         """Return the name of the linear solver, and counters since the first start."""
-        return {"linear_solver": self.matrix.sentence(), **self.ida.statistics()}
+        return {"linear_solver": self.matrix.sentence(), **self.ida.counters.counted()}
 
     @property
     def long_step(self) -> float:
-        return self._starts.found()[0].long_step
+        return float(self.ida.output_correction.cells["long"])
 
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""

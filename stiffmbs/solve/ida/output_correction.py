@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
@@ -11,20 +13,25 @@ from ..linear_solvers.linear_solver import Assembled, LinearSolver
 from .native.layouts import OUTPUT_CORRECTION
 from .session import Session
 
+if TYPE_CHECKING:
+    from .ida import NativeIda
+
 VECTORS = "y", "yp", "defect", "correction", "weight", "size", "zero"
 
 
 class OutputCorrection:
     """Matrix, factors and vectors for the correction of interpolated states; created for the first stiff scene.
 
-    `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`.
+    `table`, `cells`: table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`, and
+    its cells, which starts set. A state stays unchanged if forces on each body balance up to the part `balanced` of the largest,
+    also with closed joints.
     """
 
     def __init__(self, equations: Equations) -> None:
         self._equations = equations
         self.table = Table(OUTPUT_CORRECTION)
-        self._cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
-        self._cells["long"] = np.inf
+        self.cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
+        self.cells["long"] = np.inf
         self._assembled: Assembled | None = None
         self._vectors: dict[str, np.ndarray] = {}
 
@@ -33,15 +40,9 @@ class OutputCorrection:
         """Return True if the memory exists."""
         return self._assembled is not None
 
-    def make_ready(
-        self, session: Session, matrix: LinearSolver, memory: int, y_vector: int, dynamics: Dynamics
-    ) -> None:
-        """Create the matrix, its solver and the vectors.
-
-        `session`: owner of these objects. `memory`: IDA memory. `y_vector`: vector like those of the iteration.
-        `dynamics`: dynamics of the same state.
-        """
-        libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
+    def make_ready(self, ida: NativeIda, session: Session, matrix: LinearSolver, dynamics: Dynamics) -> None:
+        """Create the matrix, its solver and the vectors. `session`: their owner. `dynamics`: dynamics of the same state."""
+        libraries, assembled = session.libraries, matrix.assembled(session, ida.y_vector)
         libraries.SUNLinSolInitialize(assembled.solver)
         vectors = {name: np.zeros(self._equations.n) for name in VECTORS}
         force_row, force_end = _rows_of_motion(self._equations)
@@ -53,7 +54,7 @@ class OutputCorrection:
         fill(
             self.table,
             {
-                "memory": memory,
+                "memory": ida.memory,
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "entries": assembled.values,
@@ -62,26 +63,11 @@ class OutputCorrection:
                 **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
             },
         )  # fmt: skip
-        self._assembled = assembled
-        self._vectors = {
-            **vectors,
-            "force_row": force_row,
-            "force_end": force_end,
-            "joint_row": joint_row,
-            "pose": pose,
-        }
-
-    def limit(self, long_step: float, part: float, balanced: float) -> None:
-        """Set the step, s, above which states within it are corrected, and the part of the tolerance that may remain.
-
-        They stay unchanged if forces on each body balance up to the part `balanced` of the largest, also with closed
-        joints.
-        """
-        self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
+        self._assembled, self._vectors = assembled, vectors  # the table keeps all other arrays
 
     def note(self) -> str:
         """Return a sentence on states that could not be corrected; empty if there are none."""
-        count, first = int(self._cells["failed"]), float(self._cells["first_failed"])
+        count, first = int(self.cells["failed"]), float(self.cells["first_failed"])
         return (
             f"coordinates are interpolated at {count} output time{'s' * (count > 1)} from t = {first:.6g} s on, where stiff forces "
             f"do not balance: they and reactions may be wrong there; reduce rtol{', or use solver: radau' * self.ready}"
@@ -89,7 +75,7 @@ class OutputCorrection:
 
     def forget(self) -> None:
         """Discard the factors and their pivots, and the number of states that could not be corrected."""
-        self._cells["factored"], self._cells["failed"] = 0.0, 0
+        self.cells["factored"], self.cells["failed"] = 0.0, 0
         if self._assembled is not None:
             self._assembled.forget()
 

@@ -13,7 +13,9 @@ from .libraries import Libraries
 from .native.layouts import STEP_WIDTH
 from .native.parameters import LOOP
 
-_COUNT = Routine("stiffmbs.solve.ida.starting.native.start", "count", "void(int64, int64*, int64*, int64*, int64*)")
+_ADD = Routine(
+    "stiffmbs.solve.ida.starting.native.start", "add_counters", "void(int64, int64*, int64*, int64*, int64*)"
+)
 
 COUNTERS = {
     "steps": "IDAGetNumSteps",
@@ -46,18 +48,11 @@ class Statistics:
             "n_counters": len(COUNTERS), "counter": self._functions, "counted": self._counted, "count": self._value, "counts": self._before,
         }  # fmt: skip
 
-    def _add_to(self, sums: np.ndarray) -> None:
-        _COUNT.short_call(len(sums), *addresses(self._functions, self._counted, self._value, sums))
-
     def total(self) -> dict[str, int]:
         """Return all counters."""
         sums = self._before.copy()
-        self._add_to(sums)
+        _ADD.short_call(len(sums), *addresses(self._functions, self._counted, self._value, sums))
         return dict(zip(COUNTERS, sums.tolist(), strict=True))
-
-    def keep(self) -> None:
-        """Add IDA's counters to the sums before a restart resets them."""
-        self._add_to(self._before)
 
     def forget(self) -> None:
         """Reset the sums before IDA is reset."""

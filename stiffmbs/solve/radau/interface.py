@@ -17,7 +17,6 @@ _SIGNATURES = {
     "set_first_step": ("IDASetInitStep", _SET),
     "set_longest_step": ("IDASetMaxStep", _SET),
     "set_newton": ("IDASetNonlinConvCoef", _SET),
-    "set_renewal": ("IDASetDeltaCjLSetup", _SET),
     "set_growth": ("IDASetEtaFixedStepBounds", "int32(int64, float64, float64)"),
     "set_order": ("IDASetMaxOrd", "int32(int64, int32)"),
     "set_tolerances": ("IDASVtolerances", "int32(int64, float64, int64)"),
@@ -48,9 +47,6 @@ REPEAT, RESOLVES, COUNTER = (_ROUTINES[name] for name in ("repeat", "resolves", 
 
 class RadauFunctions(Libraries):
     """SUNDIALS functions, with those of IDA replaced by Radau methods."""
-
-    def __init__(self, libraries: Libraries) -> None:
-        super().__init__(libraries.loaded)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("IDA"):

@@ -113,7 +113,7 @@ class Radau:
 
     def libraries(self) -> Libraries:
         """Return the SUNDIALS functions, with those of IDA replaced."""
-        return RadauFunctions(ida_libraries())
+        return RadauFunctions(ida_libraries().loaded)
 
     def memory(self, session: Session) -> int:
         """Return the address of the memory."""

@@ -120,7 +120,7 @@ def _evaluations(sim: Simulation, step: float, values: np.ndarray) -> str:
     spent = []
     for row in values[:CHECKED]:
         sim.step(step, row)
-        counted = sim._stepper._started._engine.ida.statistics()
+        counted = sim._stepper._started._engine.ida.counters.counted()
         spent.append(counted["residuals"] + counted["jacobians"])
     return f", {np.mean(spent):.0f} evaluations, {max(spent)} at most"
 

@@ -9,13 +9,12 @@ import numpy as np
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OPERATIONS
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import integrator
-from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
 from stiffmbs.solve.ida import native_engine
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
 from stiffmbs.solve.ida.starting.native import start
-from stiffmbs.solve.ida.starting.starts import newton_bounds
+from stiffmbs.solve.ida.starting.starts import newton_bounds, polishing_bounds
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Record, always, nothing
 from tests.interpreted import interpreted
@@ -71,7 +70,7 @@ def eased(newton, failures=1000, steps=1000):
     """Return the Newton tolerance after a call with a number of failures."""
     begun = [newton]
     counted = {"steps": steps, "convergence_failures": failures}
-    ida = Record(counted=lambda: counted, usual_steps=0)
+    ida = Record(counters=Record(total=lambda: counted), usual_steps=0)
     engine = Record(
         ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _resume=begun.append,
     )  # fmt: skip
@@ -85,19 +84,8 @@ def tolerance(of_positions, rtol=1e-6):
     return w.newton
 
 
-def balance_between_steps():
-    found = []
-    ida = Record(correct_outputs=lambda *given: found.append(given[-1]), history=Record(count=0))
-    engine = Record(
-        _stiffness=Stiffness(1.0, 1.0),
-        ida=ida,
-        _dynamics=None,
-        _rtol=1e-6,
-        _order=Record(begin=nothing),
-        _starts=Record(may_stiffen=True),
-    )
-    native_engine.NativeEngine._follow_stiffness(engine, 0.0)
-    return found[0]
+def long_step(of_positions):
+    return start._long_step(Record(**polishing_bounds(1e-6), of_positions=of_positions, of_velocities=0.0))
 
 
 def corrections(ratio):
@@ -173,7 +161,7 @@ def first_check(module, name, check, counts):
     def unchecked(steps):
         made = []
         with patch.object(module, name, lambda *_: made.append(1)):
-            check(Record(steps=lambda: steps, split=lambda y: (y, y), statistics=dict))
+            check(Record(steps=lambda: steps, statistics=dict))
         return not made
 
     return count_while(unchecked, counts)
@@ -181,17 +169,17 @@ def first_check(module, name, check, counts):
 
 def at_a_step(engine):
     """Let an engine judge its steps."""
-    reached = Record(t=0.0, y=np.zeros(1), failure="")
+    reached = Record(t=0.0, state=lambda: (np.zeros(1), np.zeros(1)), failure="")
     engine._failure, engine._dynamics, engine._settings = lambda *_: "", None, None
     native_engine.NativeEngine.refuse(engine, reached, Grid(0.0, 1.0, None))
 
 
 def in_a_run(engine):
     """Integrate to one step of an engine."""
-    state = np.zeros((1, 1))
-    reached = Record(times=np.zeros(1), rows=state, t=0.0, y=np.zeros(1))
+    row = np.zeros((1, 1))
+    reached = Record(times=np.zeros(1), rows=(row, row), t=0.0, state=lambda: (row[0], row[0]))
     more = {
-        "states": lambda rows: (rows, rows), "last_step": nothing, "history": nothing, "recorded": tuple, "refuse": nothing, "whole_steps": nothing,
+        "last_step": nothing, "history": nothing, "recorded": tuple, "refuse": nothing, "whole_steps": nothing,
         "watch": Record(departures=nothing, refuse_departures=nothing),
     }  # fmt: skip
     for each, value in more.items():
@@ -205,9 +193,9 @@ def steps_that_rounding_governs():
     """Return the thousands of steps up to which a run is not checked for a tolerance below rounding."""
 
     def engine(n):
-        return Record(steps=lambda: 1000 * n, statistics=dict, split=lambda y: (y, y), _dynamics=None, _settings=None)
+        return Record(steps=lambda: 1000 * n, statistics=dict, _dynamics=None, _settings=None)
 
-    reached = Record(y=np.zeros(1), failure="", t=0.0)
+    reached = Record(state=lambda: (np.zeros(1), np.zeros(1)), failure="", t=0.0)
     grid = Grid(0.0, 1.0, None)
     with patch.multiple(native_engine, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
         return count_while(lambda n: not native_engine.NativeEngine._failure(engine(n), reached, grid), range(100))
@@ -239,8 +227,8 @@ DECISIONS = {
     "newton.many_failures": lambda: count_while(lambda k: eased(1e-6, k) == 1e-6, range(1000)),
     "newton.eased": lambda: eased(1e-6),
     "newton.easiest": lambda: eased(0.1),
-    "polishing.amplified": lambda: Stiffness(100.0, 0.0).long_step,
-    "polishing.unbalanced": balance_between_steps,
+    "polishing.amplified": lambda: long_step(100.0),
+    "polishing.unbalanced": lambda: polishing_bounds(1e-6)["balanced"],
     "polishing.most_corrections": lambda: corrections(0.1),
     "polishing.slowest": lambda: count_while(lambda k: corrections(0.01 * k) > 2, range(1, 100)),
     "polishing.rounded_off": largest_rounded_off_imbalance,

@@ -344,9 +344,14 @@ def is_unresolved(part):
     return linearly_implicit._is_unresolved(table, state, Record(n=2))
 
 
+def steps_to_an_early_check(most):
+    """Return the steps limited by stability after which a run of `auto` checks whether implicit steps are to follow."""
+    return adaptive.AdaptiveSteps._looks(Record(work=Record(count=lambda name: 0), _may_leave=True), most)[1]
+
+
 DECISIONS = {
     "linearly_implicit_steps.noise": lambda: count_while(lambda part: not is_unresolved(1e-9 * part), DOUBLES),
-    "explicit_checks.now_and_then": lambda: adaptive.held(800, True),
+    "explicit_checks.now_and_then": lambda: steps_to_an_early_check(800),
     "explicit_ends.close": largest_uncertain_pivot,
     "explicit_ends.harmful": largest_harmless_change,
     "explicit_ends.shorter": step_before_a_bifurcation,

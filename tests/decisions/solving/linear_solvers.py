@@ -99,7 +99,14 @@ def largest_change_of_a_pivot():
 def setups_after_refusals():
     """Return the number of setups without a trial after many refusals."""
     s = Record(
-        ready=1, n_lu=1, factors=None, waits=0, refused=999, setup_pivots=nothing, with_pivots={0: Record(last_flag=0)}
+        ready=1,
+        n_lu=1,
+        parts=1,
+        factors=None,
+        waits=0,
+        refused=999,
+        setup_pivots=nothing,
+        with_pivots={0: Record(last_flag=0)},
     )
     replaced = {
         "holds": always, "block_view": lambda table: s, "_eliminated": nothing, "trusted": never, "_has_pivots": always,

@@ -29,7 +29,7 @@ from tests.by_callbacks import ByScikitSundae
 def begin(ida, t, y, yp, first_step=0.0, highest_order=5):
     """Start or restart IDA at consistent values."""
     if ida.begun:
-        ida._statistics.keep()
+        ida.counters.arrays["counts"][:] = [*ida.counters.total().values()]
     ida.y[:], ida.yp[:] = y, yp
     ida.ask("IDAReInit", t, ida.y_vector, ida.yp_vector)
     ida.ask("IDASetInitStep", first_step)
@@ -117,7 +117,7 @@ def test_the_steps_are_those_of_scikit_sundae(name, end, request):
     rows, status = problem.through(native, times)
     expected, sundae = problem.through_scikit_sundae(times)
     assert status is Status.STOP
-    counted = native.statistics()
+    counted = native.counters.counted()
     assert (counted["residuals"], counted["jacobians"]) == pytest.approx((sundae.residuals, sundae.jacobians), rel=0.02)
     at = np.concatenate([problem.equations.at[name] for name in "qu"])
     np.testing.assert_allclose(rows[:, at], expected[:, at], rtol=0.1 * problem.rtol, atol=0.1 * problem.rtol)
@@ -195,7 +195,7 @@ def test_other_layouts_of_linear_solvers_are_refused(examples, monkeypatch):
 def test_history_tells_time_order_and_size_of_each_step(pendulum):
     ida = pendulum.native()
     pendulum.through(ida, np.array([2.0]))
-    (t, order, size), counted = ida.history.stored(), ida.statistics()
+    (t, order, size), counted = ida.history.stored(), ida.counters.counted()
     assert ida.history.count == len(t) == counted["steps"]
     np.testing.assert_allclose(np.diff(t), size[1:], atol=1e-14)
     assert t[-1] == pytest.approx(2.0, abs=1e-13)
@@ -229,10 +229,10 @@ def test_it_begins_again_as_new(pendulum):
     times = np.linspace(0, 1, 11)[1:]
     ida = pendulum.native()
     first, _ = pendulum.through(ida, times)
-    steps = ida.statistics()["steps"]
+    steps = ida.counters.counted()["steps"]
     again, _ = pendulum.through(ida, times)
     np.testing.assert_array_equal(first, again)
-    assert ida.statistics()["steps"] == ida.history.count == 2 * steps
+    assert ida.counters.counted()["steps"] == ida.history.count == 2 * steps
 
 
 def test_the_worst_unknown_is_the_one_with_the_tightest_tolerance(pendulum):
@@ -279,7 +279,7 @@ def test_a_residual_without_a_value_cuts_the_step_alone():
     ida = wall.native()
     _, status = wall.through(ida, np.array([2.0]), first_step=1.9)  # through the wall
     assert status is Status.STOP
-    assert ida.statistics()["convergence_failures"] > 0
+    assert ida.counters.counted()["convergence_failures"] > 0
     np.testing.assert_allclose(ida.y[[0, 3]], (0, -1), atol=0.01)
 
 

@@ -27,9 +27,10 @@ def _event_functions(s, m, t):
     return evaluate(s, SWITCH, t)
 
 
-@compiled
-def crossing(s, m, t, size, q, u, along_q, along_u, count, found):
+def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
     """Mark the first `count` event functions with different signs on both sides of a move; return their number."""
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
     _take(s, size, q, u, along_q, along_u)
     values = _event_functions(s, m, t)
     for k in range(count):
@@ -44,12 +45,6 @@ def crossing(s, m, t, size, q, u, along_q, along_u, count, found):
     return total
 
 
-def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
-    """Call `crossing` from Python."""
-    m = dynamics_view(dynamics)
-    return crossing(state_view(m.state), m, t, size, q, u, along_q, along_u, count, found)
-
-
 def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
     """Store the first `count` event functions at a moved state in `values`."""
     m = dynamics_view(dynamics)
@@ -58,9 +53,10 @@ def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
     copied(values, _event_functions(s, m, t), count)
 
 
-@compiled
-def following_velocities(s, m, t, size, q, u, along_u, count, found):
+def by_velocities(t, size, q, u, along_u, count, found, dynamics):
     """Mark the first `count` event functions that depend on velocities."""
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
     copied(s.q, q, s.n_q)
     for k in range(s.n_u):
         s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
@@ -70,12 +66,6 @@ def following_velocities(s, m, t, size, q, u, along_u, count, found):
     values = _event_functions(s, m, t)
     for k in range(count):
         found[k] = found[k] != values[k]
-
-
-def by_velocities(t, size, q, u, along_u, count, found, dynamics):
-    """Call `following_velocities` from Python."""
-    m = dynamics_view(dynamics)
-    following_velocities(state_view(m.state), m, t, size, q, u, along_u, count, found)
 
 
 def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):

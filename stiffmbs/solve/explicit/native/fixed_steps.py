@@ -172,9 +172,11 @@ def _arrive(x, c, s, m, t):
     return 0
 
 
-@compiled
-def take_steps(x, c, s, m, start, h, steps):
+def fixed_steps(start, h, steps, explicit):
     """Take `steps` steps of length h from the time `start`; 0, or a negative status with the state unchanged."""
+    x = explicit_view(explicit)
+    c, m = scheme_view(x.scheme), dynamics_view(x.dynamics)
+    s = state_view(m.state)
     copied(x.y_first, x.y, x.n)
     x.t = start
     if not x.started:
@@ -193,10 +195,3 @@ def take_steps(x, c, s, m, start, h, steps):
             x.rates_known = 0
             return status
     return 0
-
-
-def fixed_steps(start, h, steps, explicit):
-    """Call `take_steps` from Python."""
-    x = explicit_view(explicit)
-    m = dynamics_view(x.dynamics)
-    return take_steps(x, scheme_view(x.scheme), state_view(m.state), m, start, h, steps)

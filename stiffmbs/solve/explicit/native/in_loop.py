@@ -6,7 +6,7 @@ from stiffmbs.dynamics.native.held_inputs import take_inputs
 from stiffmbs.dynamics.native.joint_coordinates import follow_joints
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view, held_inputs_view, joint_coordinates_view
 from stiffmbs.solve.events.native.bounds import event_search_view
-from stiffmbs.solve.explicit.native.fixed_steps import take_steps
+from stiffmbs.solve.explicit.native.fixed_steps import fixed_steps
 from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, rates, scheme_view
 
 
@@ -24,16 +24,11 @@ def _forget(x, m):
             r.largest_scale[k] = 0.0
 
 
-@compiled
-def _one(x, start, end, count):
-    m = dynamics_view(x.dynamics)
-    _forget(x, m)
-    return take_steps(x, scheme_view(x.scheme), state_view(m.state), m, start, (end - start) / count, count)
-
-
 def one_in_loop(start, end, count, explicit):
     """Take one step of a simulation, as `count` steps of the scheme; 0, or a negative status with the state unchanged."""
-    return _one(explicit_view(explicit), start, end, count)
+    x = explicit_view(explicit)
+    _forget(x, dynamics_view(x.dynamics))
+    return fixed_steps(start, (end - start) / count, count, explicit)
 
 
 def many_in_loop(start, dt, count, n, values, held, joints, explicit):
@@ -46,7 +41,7 @@ def many_in_loop(start, dt, count, n, values, held, joints, explicit):
     t = start
     for k in range(n):
         take_inputs(i, shifted(values, k * i.n))
-        status = _one(x, t, t + dt, count)
+        status = one_in_loop(t, t + dt, count, explicit)
         if status < 0:
             m.status = status
             return k
@@ -80,7 +75,7 @@ def each_in_loop(dt, count, n, times, states, values, coordinates, rates, status
         copied(x.y, state, x.n)
         take_inputs(i, shifted(values, k * i.n))
         _begin_at_zeros(x, times[k])
-        statuses[k] = _one(x, times[k], times[k] + dt, count)
+        statuses[k] = one_in_loop(times[k], times[k] + dt, count, explicit)
         if statuses[k] == 0:
             j.t = times[k]
             copied(j.coordinate, coordinate, j.n)

@@ -5,6 +5,7 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.compile.machine.native.quads import plus_product, quad, spread, sum_of
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
 from stiffmbs.solve.events.native.layouts import EVENT, NO_EVENT
@@ -30,20 +31,13 @@ STALLED: Final = -101
 
 @compiled
 def _finite(values, count):
-    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # independent sums run in parallel
-    whole = count - count % 8
-    for k in range(0, whole, 8):
-        a += 0.0 * values[k]
-        b += 0.0 * values[k + 1]
-        c += 0.0 * values[k + 2]
-        d += 0.0 * values[k + 3]
-        e += 0.0 * values[k + 4]
-        f += 0.0 * values[k + 5]
-        g += 0.0 * values[k + 6]
-        h += 0.0 * values[k + 7]
+    total, whole = spread(0.0), count - count % 4
+    for k in range(0, whole, 4):
+        total = plus_product(total, spread(0.0), quad(values, k))
+    left = sum_of(total)
     for k in range(whole, count):
-        a += 0.0 * values[k]
-    return ((a + b) + (c + d)) + ((e + f) + (g + h)) == 0.0
+        left += 0.0 * values[k]
+    return left == 0.0
 
 
 def residual(t, yy, yp, rr, user_data):

@@ -47,7 +47,7 @@ START = Layout({
     "n_event_functions": INT, "first_limit": INT, "n_counters_of_angles": INT, "angle_source": INTS, "angle_row": INTS,
     "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
     "t": FLOAT_CELL, "jumps": INT_CELL, "meets": INT_CELL,
-    "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "least_jump": FLOAT_CELL, "speed": FLOATS, "gap": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
+    "amplified": FLOAT_CELL, "least": FLOAT_CELL, "balanced": FLOAT_CELL, "largest_jump": FLOAT_CELL, "least_jump": FLOAT_CELL, "speed": FLOATS, "gap": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
 })  # fmt: skip
 """Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
@@ -58,7 +58,7 @@ For restarts (`stiffmbs.solve.ida.starting.native.breakpoints`): event functions
 of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
 state and event functions.  Cells: size of the move; time of the restart, 1 if velocities have jumped, 1 if event functions
 of velocities change sign between both sides.  For breakpoints passed in one call:
-factor of long steps and least residual within them; largest velocity change without
+factor of long steps, least residual and allowed imbalance within them; largest velocity change without
 a report, relative to the velocities, and the least one in m/s, with factors from velocities to m/s; time from a stop to the
 restart after it; number of breakpoints passed, and steps before the last."""
 

@@ -17,14 +17,15 @@ from ....model.settings import RunSettings
 from ...engine import Begun
 from ...error_control.error_test import ErrorControl
 from ...error_control.native.parameters import NEWTON, POLISHING
-from ...error_control.newton import RowSums, Stiffness, row_sums_of
+from ...error_control.newton import RowSums, row_sums_of
 from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
 from ..native.layouts import START
-from ..statistics import Statistics, failure_sentence
+from ..statistics import failure_sentence
 
 if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
+    from ...stiff_rows import States
     from ..ida import NativeIda
 
 START_MODULE, RESTART_MODULE = (f"stiffmbs.solve.ida.starting.native.{name}" for name in ("start", "breakpoints"))
@@ -43,21 +44,18 @@ UNUSED = dict.fromkeys(START, 0) | {
     name: np.empty(0, dtype=DTYPES[START[name]]) for name in START if START[name] in DTYPES
 }
 """Contents of columns that only restarts use, before the first of them."""
-OF_STIFFNESS = "of_positions", "of_velocities"
-"""Cells of the fields of a `Stiffness`."""
 
 
 class Starts:
     """Compiled starts of one integrator.
 
-    `ida`: driver of IDA. `statistics`: counters of IDA. `may_pass`: true if one call may pass several breakpoints: no event
+    `ida`: driver of IDA. `may_pass`: true if one call may pass several breakpoints: no event
     functions, and no forces that depend on multipliers. `may_stiffen`: true if forces depend on positions or velocities.
     """
 
     def __init__(
-        self, dynamics: Dynamics, equations: Equations, ida: NativeIda, statistics: Statistics,
-        settings: RunSettings, control: ErrorControl,
-    ) -> None:  # fmt: skip
+        self, dynamics: Dynamics, equations: Equations, ida: NativeIda, settings: RunSettings, control: ErrorControl
+    ) -> None:
         system, self._state = dynamics.system, dynamics.state
         for term_set in ("motion", "tangent"):
             self._state.load(term_set)
@@ -65,9 +63,8 @@ class Starts:
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": ida.table, "error_norm": ida.error_norm.table, "n_watched": ida.watch.n,
             "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
-            **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
-            **newton_bounds(settings.rtol, control.newton), "growth": control.growth,
-            "amplified": POLISHING.amplified, "least": NEWTON.precision / settings.rtol,
+            **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **ida.counters.arrays,
+            **newton_bounds(settings.rtol, control.newton), **polishing_bounds(settings.rtol), "growth": control.growth,
             **{name: ida.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
         self._values, self._ida, self._table = values, ida, packed(START, {**UNUSED, **values})
@@ -77,14 +74,11 @@ class Starts:
         self._has_events = system.n_event_functions > 0
         self.may_pass = not self._has_events and not len(system.term("acceleration", "f_lam").row)
 
-    def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> None:
-        """Start at consistent values.
-
-        `t`: s. `counted`: true if IDA's counters belong to this run. Raises ValueError if IDA reports an error.
-        """
+    def begin(self, start: InitialValues, t: float, highest_order: int) -> None:
+        """Start at consistent values and a time, s. Raises ValueError if IDA reports an error."""
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
-        _sound(_START.short_call(t, counted, highest_order, self._at))
+        _sound(_START.short_call(t, self._ida.begun, highest_order, self._at))
 
     def resume(self, newton: float, highest_order: int) -> None:
         """Start at IDA's current unknowns, with a part of the tolerance that Newton's iteration may leave."""
@@ -99,28 +93,20 @@ class Starts:
         fill(self._table, self._values)
         return self._at
 
-    def restart(
-        self,
-        state: tuple[np.ndarray, np.ndarray],
-        t: float,
-        ahead: float,
-        stop: float,
-        counted: bool,
-        highest_order: int,
-    ) -> Begun | None:
+    def restart(self, state: States, t: float, ahead: float, stop: float, highest_order: int) -> Begun | None:
         """Restart at consistent values after a state.
 
-        `state` of shapes (n_q,), (n_u,). `t`: s. `ahead`: least time of extrapolation past events simultaneous with
-        the one at t, s; 0 for none. `stop`: next time at which IDA stops, s. `counted`: true if IDA's counters belong to this run. Returns None, without a start, if
-        there are no consistent values or a force is beyond its limits.
+        `state`: q and u. `t`: s. `ahead`: least time of extrapolation past events simultaneous with
+        the one at t, s; 0 for none. `stop`: next time at which IDA stops, s. Returns None, without a start, if there are no consistent values or a
+        force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
-        if RESTARTED.short_call(t, ahead, stop, counted, highest_order, self.table) < 0:
+        if RESTARTED.short_call(t, ahead, stop, self._ida.begun, highest_order, self.table) < 0:
             return None
         cells = self._cells
         return Begun(float(cells["t"]), bool(cells["jumps"]), bool(cells["meets"]))
 
-    def advance(self, state: tuple[np.ndarray, np.ndarray], t: float, end: float, highest_order: int) -> bool:
+    def advance(self, state: States, t: float, end: float, highest_order: int) -> bool:
         """Integrate a state, which is overwritten, to a later time; False, with the state unchanged, if it needs a run."""
         if self._has_events:
             return False
@@ -145,10 +131,10 @@ class Starts:
         """Return the number of breakpoints passed by the last call, and its steps before the last of them."""
         return int(self._cells["passed"]), int(self._cells["steps_before"])
 
-    def found(self) -> tuple[Stiffness, float]:
-        """Return the stiffness, and the part of the tolerance that Newton's iteration may leave."""
-        cells = self._cells
-        return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
+    @property
+    def newton(self) -> float:
+        """Return the part of the tolerance that Newton's iteration may leave."""
+        return float(self._cells["newton"])
 
 
 def _sound(flag: int) -> None:
@@ -160,6 +146,11 @@ def newton_bounds(rtol: float, fixed: float | None) -> dict[str, float]:
     """Return the product of Newton's tolerance and the stiffness, and its bounds: the fixed one of the integrator, if any."""
     tightest = max(NEWTON.negligible, NEWTON.precision / rtol)
     return {"soft": NEWTON.soft, "loosest": fixed or NEWTON.loosest, "tightest": fixed or tightest}
+
+
+def polishing_bounds(rtol: float) -> dict[str, float]:
+    """Return the factor of long steps, and the least residual and the imbalance that corrections within them may leave."""
+    return {"amplified": POLISHING.amplified, "least": NEWTON.precision / rtol, "balanced": POLISHING.unbalanced * rtol}
 
 
 def _places(equations: Equations) -> dict[str, Any]:
@@ -189,14 +180,14 @@ def _relaxing(dynamics: Dynamics, settings: RunSettings, factor: float) -> dict[
 
 def _restarting(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
     """Return what restarts need: event functions, revolution counters, sizes of jumps, and memory."""
-    system, jumps = dynamics.system, Jumps(dynamics, settings)
+    system, (speed, least_jump) = dynamics.system, Jumps(dynamics, settings).resolution
     counted, n = system.term("position", "continuous_angle"), system.n_event_functions
     along_q, along_u = direction_of(dynamics)
     return {
         "n_event_functions": n, "first_limit": system.first_limit,
         "n_counters_of_angles": len(counted.row), "angle_source": integers(counted.source), "angle_row": integers(counted.row),
         "reach": JUMP.larger_move, "along_q": along_q, "along_u": along_u,
-        "largest_jump": VELOCITY_JUMP.least, "least_jump": jumps.least, "speed": jumps.scale,
+        "largest_jump": VELOCITY_JUMP.least, "least_jump": least_jump, "speed": speed,
         "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
     }  # fmt: skip
 

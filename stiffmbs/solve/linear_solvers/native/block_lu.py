@@ -27,9 +27,10 @@ from stiffmbs.solve.linear_solvers.native.node_factors import (
     add_two_quads_of_pairs,
     inverted,
     multiplied,
+    pair,
+    single,
     triangular,
 )
-from stiffmbs.solve.linear_solvers.native.pair_factors import inverted_of_pairs, triangular_of_pairs
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 from stiffmbs.solve.linear_solvers.native.sparse_lu import sparse_view
 from stiffmbs.sparse import block_updates
@@ -41,7 +42,7 @@ block_view = view_of("BlockLU", BLOCK_LU)
 
 
 @compiled
-def _taken_out(s, k):
+def _taken_out(s, k, parts):
     """Update later blocks by the elimination of supernode k, shape by shape."""
     # Right-looking elimination, A_ij -= L_ik U_kj for all later i and j.  The rows right of the diagonal hold -U
     # (`multiplied`), so that every update is a sum of products.  One shape at a time: its loop has no branches.
@@ -55,14 +56,14 @@ def _taken_out(s, k):
             for place in range(at, s.update_end[shape]):
                 u = shifted(s.update, 4 * place)
                 a, b = panel(s, u[2]), panel(s, u[3])
-                if s.parts == 2:
+                if parts() == 2:
                     add_two_quads_of_pairs(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
                 else:
                     add_two_quads(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
             for place in range(s.update_end[shape], s.update_end[shape + 1]):
                 u = shifted(s.update, 4 * place)
                 a, b = panel(s, u[2]), panel(s, u[3])
-                if s.parts == 2:
+                if parts() == 2:
                     add_one_quad_of_pairs(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
                 else:
                     add_one_quad(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
@@ -70,22 +71,18 @@ def _taken_out(s, k):
 
 
 @compiled
-def _factor_node(s, k, first):
+def _factor_node(s, k, first, parts):
     """Factor supernode k; its pivots are stored from unknown `first` on."""
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
     lower = shifted(right, size * s.right_width[k])  # L^-1 P is stored after the rows right of the diagonal
-    if s.parts == 2:
-        triangular_of_pairs(s, down, stride, lower, width, size, first)
-        inverted_of_pairs(s, down, stride, width, size)
-    else:
-        triangular(s, down, stride, lower, width, size, first)
-        inverted(s, down, stride, width, size)
-    multiplied(s, lower, width, right, s.right_width[k], size)
+    triangular(s, down, stride, lower, width, size, first, parts)
+    inverted(s, down, stride, width, size, parts)
+    multiplied(s, lower, width, right, s.right_width[k], size, parts)
 
 
 @compiled
-def _eliminated(s, f):
+def _eliminated(s, f, parts):
     panels = floats(s.panels)
     for p in range(s.n_lu):  # fill-in, and lanes without an unknown
         panels[p] = 0.0
@@ -94,8 +91,8 @@ def _eliminated(s, f):
         panels[s.slot[p]] = f.a[p]
     first = 0
     for k in range(s.n_nodes):
-        _factor_node(s, k, first)
-        _taken_out(s, k)
+        _factor_node(s, k, first, parts)
+        _taken_out(s, k, parts)
         first += s.size[k]
 
 
@@ -136,7 +133,10 @@ def setup(solver, matrix):
         s.waits -= 1
     else:
         f = factors_view(s.factors)
-        _eliminated(s, f)
+        if s.parts == 1:
+            _eliminated(s, f, single)
+        else:
+            _eliminated(s, f, pair)
         if trusted(s, f):
             return int32(OK)
         s.refused += 1

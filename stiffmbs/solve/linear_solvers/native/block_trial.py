@@ -6,9 +6,18 @@ Oettli and Prager, Compatibility of approximate solution of linear equations, Nu
 """
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted
-from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, set_quad, spread, sum_of
+from stiffmbs.compile.machine.native.quads import (
+    plus_product,
+    product_of,
+    quad,
+    quad_of,
+    set_quad,
+    spread,
+    sum_of,
+    times_i,
+)
 from stiffmbs.solve.linear_solvers.native.layouts import COORDINATE, MULTIPLIER
-from stiffmbs.solve.linear_solvers.native.pair_factors import backward_pairs, forward_pairs
+from stiffmbs.solve.linear_solvers.native.node_factors import add_columns, pair, single
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 
 
@@ -119,47 +128,68 @@ def panel(s, at):
 
 
 @compiled
-def _forward(s, k):
+def _forward(s, k, parts):
     """Multiply supernode k of x by L^-1 P, and update later supernodes."""
     size, stride = s.size[k], s.down_width[k]
     down = panel(s, s.start[2 * k])
     lower = panel(s, s.start[2 * k + 1] + size * s.right_width[k])
     own = shifted(s.x, s.node_start[k])
     width = s.node_start[k + 1] - s.node_start[k]
-    for j in range(size):  # with the sign of -L^-1 P x until the end: `add_products` can only add
-        s.scratch[j] = -own[j]
-    for at in range(0, width, 4):
+    for at in range(0, width, 4):  # with the sign of -L^-1 P x until the end: products can only be added
+        set_quad(s.scratch, at, product_of(spread(-1.0), quad(own, at)))
         set_quad(own, at, spread(0.0))
-        add_products(1, 1, shifted(own, at), 0, s.scratch, 1, shifted(lower, at), width, size)
+    for at in range(0, width, 4):
+        add_columns(parts, shifted(own, at), s.scratch, shifted(lower, at), width, size)
     first = s.down_at[k]
     for place in range(first, s.down_at[k + 1]):
         at = width + 4 * (place - first)
-        add_products(1, 1, shifted(s.x, s.down_x[place]), 0, own, 1, shifted(down, at), stride, size)
-    for j in range(size):
-        own[j] = -own[j]
+        add_columns(parts, shifted(s.x, s.down_x[place]), own, shifted(down, at), stride, size)
+    for at in range(0, width, 4):
+        set_quad(own, at, product_of(spread(-1.0), quad(own, at)))
 
 
 @compiled
-def _backward(s, k):
+def _backward(s, k, parts):
     """Update supernode k of x by later supernodes, and multiply it by U^-1."""
     size, stride, width = s.size[k], s.down_width[k], s.right_width[k]
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     own = shifted(s.x, s.node_start[k])
+    turned, known = shifted(s.scratch, width), shifted(s.scratch, parts() * width)
     # The later unknowns are gathered once: each line of the panel, which holds -U, is then one contiguous dot product.
+    # Those of a complex line with (re, -im) and with (im, re) are the parts of its product with x.
     first = s.right_at[k]
     for place in range(first, s.right_at[k + 1]):
-        set_quad(s.scratch, 4 * (place - first), quad(s.x, s.right_x[place]))
+        at = 4 * (place - first)
+        gathered = quad(s.x, s.right_x[place])
+        if parts() == 2:
+            gathered = product_of(gathered, quad_of(1.0, -1.0, 1.0, -1.0))
+            set_quad(turned, at, times_i(gathered))
+        set_quad(s.scratch, at, gathered)
     for i in range(size):
-        total = spread(0.0)
-        for at in range(0, width, 4):
-            total = plus_product(total, quad(right, i * width + at), quad(s.scratch, at))
-        s.scratch[width + i] = own[i] + sum_of(total)
-    known = shifted(s.scratch, width)
-    for at in range(0, s.node_start[k + 1] - s.node_start[k], 4):  # U^-1 is triangular: columns before `at` are zero
+        total, other = spread(0.0), spread(0.0)
+        if parts() == 1:
+            for at in range(0, width, 4):
+                total = plus_product(total, quad(right, i * width + at), quad(s.scratch, at))
+        else:
+            for at in range(0, width, 4):
+                line = quad(right, i * width + at)
+                total = plus_product(total, line, quad(s.scratch, at))
+                other = plus_product(other, line, quad(turned, at))
+            known[2 * i + 1] = own[2 * i + 1] + sum_of(other)
+        known[parts() * i] = own[parts() * i] + sum_of(total)
+    for at in range(0, s.node_start[k + 1] - s.node_start[k], 4):  # U^-1 is triangular: columns before j are zero
         set_quad(own, at, spread(0.0))
-        add_products(
-            1, 1, shifted(own, at), 0, shifted(known, at), 1, shifted(down, at * stride + at), stride, size - at
-        )
+        j = at // parts()
+        add_columns(parts, shifted(own, at), shifted(known, at), shifted(down, j * stride + at), stride, size - j)
+
+
+@compiled
+def _substituted(s, parts):
+    """Solve with the factors for the vector x."""
+    for k in range(s.n_nodes):
+        _forward(s, k, parts)
+    for k in range(s.n_nodes - 1, -1, -1):
+        _backward(s, k, parts)
 
 
 @compiled
@@ -169,13 +199,7 @@ def solved(s, of):
         s.x[p] = 0.0
     for j in range(s.n):
         s.x[s.place[j]] = of[j]
-    if s.parts == 2:
-        for k in range(s.n_nodes):
-            forward_pairs(s, k, panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1]))
-        for k in range(s.n_nodes - 1, -1, -1):
-            backward_pairs(s, k, panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1]))
-        return
-    for k in range(s.n_nodes):
-        _forward(s, k)
-    for k in range(s.n_nodes - 1, -1, -1):
-        _backward(s, k)
+    if s.parts == 1:
+        _substituted(s, single)
+    else:
+        _substituted(s, pair)

@@ -181,11 +181,6 @@ def set_order(memory, order):
     return int32(OK)
 
 
-def set_renewal(memory, change):
-    """Ignore the renewal of matrices (IDASetDeltaCjLSetup)."""
-    return int32(OK)
-
-
 def time_of(memory, result):
     """Store the time of the state (IDAGetCurrentTime)."""
     x = radau_view(ints(memory))

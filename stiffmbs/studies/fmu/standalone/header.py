@@ -27,15 +27,15 @@ def header(model: ExportedModel, token: str, symbols: Mapping[str, str], functio
     functions of the image in the object code, in its order.
     """
     image, dynamics = model.image, model.dynamics
-    system, memory, watch = dynamics.system, model.work.memory, model.work.watch
+    system, work, watch = dynamics.system, model.work, model.work.watch
     start = model.job.start
     functions, algebraic = list(functions), system.algebraic_coordinates.tolist()
     at = {
         "DYNAMICS": image.at(dynamics.table), "STATUS": image.cell(dynamics.table, "status"),
-        "EXPLICIT": image.at(memory.table), "WATCH": image.at(watch.table), "BEGUN": image.cell(watch.table, "begun"),
-        "ATOL": _place(image, memory.atol), "Y": _place(image, memory.y), "LAM": _place(image, memory.lam),
-        "END_RATES": _place(image, memory.end_rates), "FOUND": _place(image, watch.found),
-        **{name.upper(): image.cell(memory.table, name) for name in OF_STEPS},
+        "EXPLICIT": image.at(work.table), "WATCH": image.at(watch.table), "BEGUN": image.cell(watch.table, "begun"),
+        "ATOL": _place(image, work.atol), "Y": _place(image, work.y), "LAM": _place(image, work.lam),
+        "END_RATES": _place(image, work.end_rates), "FOUND": _place(image, watch.found),
+        **{name.upper(): image.cell(work.table, name) for name in OF_STEPS},
     }  # fmt: skip
     sizes = {
         "N_Q": system.n_q, "N_U": system.n_u, "N_C": system.n_c, "N_OUTPUT": system.n_values("output"), "N_JUDGED": len(JUDGED),

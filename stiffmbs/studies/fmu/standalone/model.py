@@ -140,12 +140,12 @@ def exported_model(scene: Scene) -> ExportedModel:
     notes = _notes(job)
     state = dynamics.state
     state.q[:], state.u[:], state.lam[:] = job.start.q, job.start.u, job.start.lam
-    work = Integration(DOP853, dynamics, job.start, grid, job.settings, capacity=1)  # no rows are read
+    work = Integration.of(DOP853, dynamics, job.start, grid, job.settings, capacity=1)  # no rows are read
     features = dynamics.input_features(grid.start, grid.end)
     work.step_bound.follow(features)
     dynamics.forget_pivots()
     work.watch.watch_for(np.zeros(work.watch.n_event_functions))
-    image = image_of([work.memory.table, dynamics.table, work.watch.table])
+    image = image_of([work.table, dynamics.table, work.watch.table])
     states, places, others = _variables(dynamics)
     places = {name: place for name, place in places.items() if name not in given}
     return ExportedModel(

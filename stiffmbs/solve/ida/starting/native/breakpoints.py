@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past, taken_back, until_changed
+from stiffmbs.solve.events.native.sides import by_velocities, crossed, moved_past, taken_back, until_changed
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
@@ -19,7 +19,6 @@ from stiffmbs.solve.ida.starting.native.start import (
     begun,
     brought_back,
     keep_counters,
-    limit,
     prepare,
     start_view,
 )
@@ -85,7 +84,6 @@ def _restarted_at_breakpoint(w, c, t, highest_order):
     restart_counters(w, s, t)
     if not _same_offsets(s, w, e) or _started(w, c, s, m, t, 1, highest_order) < 0:
         return UNFINISHED
-    limit(w, c)
     w.t = t
     return OK
 
@@ -121,14 +119,14 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
 
 
 @compiled
-def _meets(w, s, m, t):
+def _meets(w, s, t):
     """Return 1 if event functions of velocities change sign near the current state, which is restored."""
     count = w.n_event_functions
     copied(w.q, s.q, s.n_q)
     copied(w.u, s.u, s.n_u)
     meets = 0
-    if crossing(s, m, t, w.reach, w.q, w.u, w.along_q, w.along_u, count, w.found) > 0:
-        following_velocities(s, m, t, w.reach, w.q, w.u, w.along_u, count, w.values)
+    if crossed(t, w.reach, w.q, w.u, w.along_q, w.along_u, count, w.found, w.dynamics) > 0:
+        by_velocities(t, w.reach, w.q, w.u, w.along_u, count, w.values, w.dynamics)
         for k in range(count):
             if w.found[k] != 0 and w.values[k] != 0.0:
                 meets = 1
@@ -219,7 +217,7 @@ def restarted_at_event(t, ahead, stop, counted, highest_order, table):
     if _started(w, c, s, m, after, counted, highest_order) < 0:
         return int32(UNFINISHED)
     w.t = after
-    w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
+    w.meets = _meets(w, s, after) if w.n_event_functions > 0 else 0
     return int32(OK)
 
 

@@ -114,7 +114,7 @@ def allow_remainder(w):
 
 @compiled
 def _long_step(w):
-    """Return `stiffmbs.solve.error_control.newton.Stiffness.long_step` for the stiffness."""
+    """Return the step size above which states within a step must be corrected; infinite if nothing is stiff."""
     longest = float("inf")
     if w.of_positions > 0.0:
         longest = sqrt(w.amplified / w.of_positions)
@@ -124,12 +124,13 @@ def _long_step(w):
 
 
 @compiled
-def limit(w, c):
-    """Set the step above which states within it are corrected, and the residual allowed after the correction."""
+def _limit(w, c):
+    """Set the step above which states within it are corrected, and the residual and imbalance that corrections may leave."""
     correction = output_correction_view(c.output_correction)
     fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
     correction.long = _long_step(w)
     correction.enough = max(w.soft / fastest if fastest > 0.0 else float("inf"), w.least)
+    correction.balanced = w.balanced
 
 
 @compiled
@@ -143,7 +144,7 @@ def follow_stiffness(c):
     s = state_view(dynamics_view(w.dynamics).state)
     load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
     _look_at_stiffness(w, s, c.returned)
-    limit(w, c)
+    _limit(w, c)
 
 
 @compiled
@@ -214,6 +215,7 @@ def prepare(w, s, m, e, c, t):
     _relax(w, s, t)
     _look_at_stiffness(w, s, t)
     allow_remainder(w)
+    _limit(w, c)
     _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
 
 
@@ -246,18 +248,12 @@ def resume(newton, highest_order, table):
     return int32(begun(w, c, c.returned, highest_order))
 
 
-@compiled
 def add_counters(count, functions, arguments, value, sums):
     """Add the results of some counter functions to sums; `value` has space for one number."""
     for k in range(count):
         value[0] = 0  # C's long may be shorter
         call_int(functions[k], (arguments[k], value))
         sums[k] += value[0]
-
-
-def count(n, functions, arguments, value, sums):
-    """Call `add_counters` from Python."""
-    add_counters(n, functions, arguments, value, sums)
 
 
 @compiled
