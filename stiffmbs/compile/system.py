@@ -148,6 +148,12 @@ class System:
         return self.algebraic | self.sampled
 
     @cached_property
+    def with_rates(self) -> np.ndarray:
+        """Indices of the coordinates after those of the bodies that have a rate: counters, differential states."""
+        with_rate = np.append(np.ones(self.n_counters, dtype=bool), ~self.without_rate)
+        return self.n_pose + np.flatnonzero(with_rate)
+
+    @cached_property
     def following_reactions(self) -> np.ndarray:
         """Indices of the algebraic states that depend on multipliers, directly or through others."""
         algebraic, among = self.algebraic_coordinates, self.term("tangent", "rate_q")

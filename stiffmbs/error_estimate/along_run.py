@@ -13,7 +13,7 @@ from ..dynamics.native.parameters import CONSISTENCY
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import closed
-from .coordinates import displaced, displacements, width, with_rates
+from .coordinates import displaced, displacements, width
 from .defects import Points, curve_of_bdf, nodes_of_bdf, nonlinear_defects, woven
 from .evaluated import Evaluated, evaluated, motion
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
@@ -23,12 +23,15 @@ from .singular_poses import refuse_singular
 from .transport import OF_BDF, Transport
 from .vibrations import FastMotions, excited_at_start
 
+MIDDLE = np.array([0.5])
+"""Place of the recorded row within a pair of equal steps."""
+
 
 @dataclass(frozen=True, eq=False)
 class StateErrors:
     """Errors of the states of one mechanism.
 
-    - `t` of shape (n,): times of the nodes, s; `recorded_q`, `recorded_u`: states of the integrator there, and `rows`: output rows
+    - `t` of shape (n,): times of the nodes, which are recorded rows, s; `recorded_q`, `recorded_u`: states of the integrator there, and `rows`: output rows
       of these after projection onto the constraints.
     - `q`, `u`: better states, without the estimated errors.
     - `errors` of shape (n, full): the errors (dq, du, ds) of the states after projection onto the constraints.
@@ -57,6 +60,7 @@ class StateErrors:
 class _Prepared:
     """Piece with its evaluated states, the points of its steps at which errors are transported, and the defects there.
 
+    - `ends` of shape (steps + 1,): rows of the start and of the ends of these steps.
     - `points` of shape (steps, points, 2 + 2 unknowns): `Transport.rows` of states; the last point of each step is its end.
     - `defects` of shape (steps, points, full): at these points.
     - `at_rows` of shape (rows, full): defects at the recorded rows, zero at the start.
@@ -64,6 +68,7 @@ class _Prepared:
 
     piece: Piece
     states: Evaluated
+    ends: np.ndarray
     points: np.ndarray
     defects: np.ndarray
     at_rows: np.ndarray
@@ -71,19 +76,22 @@ class _Prepared:
     @property
     def sizes(self) -> np.ndarray:
         """Lengths of the steps, s."""
-        return np.diff(self.states.t[:: self.piece.points])
+        return np.diff(self.states.t[self.ends])
+
+    @property
+    def between(self) -> np.ndarray:
+        """Mask of the rows within pairs of equal steps, which are left out where stiff forces cannot be balanced."""
+        found = np.full(len(self.states.t), self.piece.points == 1)
+        found[self.ends] = False
+        return found
 
 
 def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> StateErrors:
     """Return the errors of the states of a run with a tolerance; raise a SolverError if a state has no solution."""
+    starts = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
-    recorded = evaluated(dynamics, t, q, u, (steps, rtol))
-    begins = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
-    nodes = [nodes_of_bdf(piece.t) if piece.points == 1 else np.arange(len(piece.t)) for piece in pieces]
-    rows = np.concatenate([first + each for first, each in zip(begins, nodes, strict=False)])
-    starts = np.append(0, np.cumsum([len(each) for each in nodes]))
-    t, q, u, states = t[rows], q[rows], u[rows], recorded.at(rows)
+    states = evaluated(dynamics, t, q, u, (steps, rtol))
     fired = np.array([bool(piece.fired) for piece in pieces])
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
@@ -99,9 +107,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     error, shift = np.zeros(width(dynamics.system)), 0.0
     for k, piece in enumerate(pieces):
         opened = k > 0 and bool(pieces[k - 1].fired)
-        each = _prepared(
-            dynamics, transport, piece, recorded.at(slice(begins[k], begins[k + 1])), nodes[k], opened, rtol
-        )
+        each = _prepared(dynamics, transport, piece, states.at(slice(starts[k], starts[k + 1])), opened, rtol)
         if k:
             error, shift = _restarted(dynamics, prepared[-1], each, error, shift)
         errors, slopes = _transported(transport, each, error)
@@ -116,20 +122,23 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         closed(dynamics, transport, each.states, *errors_and_slopes, each.at_rows, float(each.sizes.max()))
         for each, errors_and_slopes in zip(prepared, of_pieces, strict=True)
     ]
-    q_better, u_better, fails = (np.concatenate(parts) for parts in zip(*better, strict=True))
-    left_out |= fails
+    fast = excited_at_start(dynamics, states.at(slice(starts[1])), pieces[0].points)
+    q_better, u_better, fails, is_open = (np.concatenate(parts) for parts in zip(*better, strict=True))
+    kept = ~(is_open & np.concatenate([each.between for each in prepared]))
+    starts = np.append(0, np.cumsum(kept))[starts]
+    t, q, u, errors, q_better, u_better = (each[kept] for each in (t, q, u, errors, q_better, u_better))
+    left_out, lost, states = (left_out | fails)[kept], lost[kept], states.at(kept)
     for k in np.flatnonzero(fired).tolist():
         before = np.arange(starts[k], starts[k + 1] - 1)
         after = np.arange(starts[k + 1] + 1, starts[min(k + 2, len(pieces))])
         for rows in (before[::-1], after):
             left_out[beyond_event(dynamics, pieces[k].fired, rows, t, (q, u), (q_better, u_better))] = True
-    fast = excited_at_start(dynamics, states.at(slice(starts[1])), pieces[0].points)
     return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out, lost, restarts, fast)
 
 
 def _is_free(system: System) -> bool:
     """Return True if the equations of positions leave errors a direction, or a state has a rate."""
-    return int((system.active & system.holonomic).sum()) < system.n_u or len(with_rates(system)) > 0
+    return int((system.active & system.holonomic).sum()) < system.n_u or len(system.with_rates) > 0
 
 
 def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
@@ -140,23 +149,25 @@ def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def _prepared(
-    dynamics: Dynamics, transport: Transport, piece: Piece, recorded: Evaluated, nodes: np.ndarray, opened: bool, rtol: float
-) -> _Prepared:  # fmt: skip
-    system, states = dynamics.system, recorded.at(nodes)
-    points, unknowns = Points.of(system, piece.points, states), transport.rows(states)
-    step = float(np.diff(recorded.t[:: piece.points]).max())
+    dynamics: Dynamics, transport: Transport, piece: Piece, states: Evaluated, opened: bool, rtol: float
+) -> _Prepared:
+    system, step = dynamics.system, float(np.diff(states.t[:: piece.points]).max())
 
     def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), step), rtol)))
+        return motion(system, evaluated(dynamics, t, q, u, (np.full(len(t), step), rtol)))
 
-    smooth = np.zeros(len(states.t) - 1, dtype=bool)  # steps of bdf with an accurate slope
     if piece.points == 1:
-        curve, smooth = curve_of_bdf(Points.of(system, 1, recorded), nodes)
-        ends = unknowns[_away_from_events(states.t, piece, opened)]
-        points, unknowns = _with_inner(dynamics, transport, points, curve, states, ends, (step, rtol))
+        ends = nodes_of_bdf(states.t)
+        curve, smooth = curve_of_bdf(Points.of(system, 1, states), ends)
+        points, unknowns = _with_inner(
+            dynamics, transport, curve, states.at(ends), _away_from_events(states.t[ends], piece, opened), (step, rtol)
+        )
         smooth[-1] &= not piece.fired
+    else:
+        ends = np.arange(0, len(states.t), piece.points)
+        points, unknowns, smooth = Points.of(system, piece.points, states), transport.rows(states), None
     defects = points.defects(bool(piece.fired))
-    if smooth.any():
+    if smooth is not None and smooth.any():
         defects[smooth] += points.changes_of(curve.errors_of_slopes(OF_BDF))[smooth]
     of_points = unknowns[1:].reshape(*defects.shape[:2], -1)
 
@@ -176,9 +187,17 @@ def _prepared(
         return found, known & ~at_event
 
     means = _with_large_errors(points, defects, local_errors, by_one_stage, nonlinear, at)
-    of_rows = defects if piece.points > 1 else defects[:, -1:]
-    at_rows = np.vstack([np.zeros_like(defects[0, :1]), of_rows.reshape(-1, defects.shape[2])])
-    return _Prepared(piece, states, of_points, means, at_rows)
+    at_rows = np.zeros((len(states.t), defects.shape[2]))
+    if smooth is None:
+        at_rows[1:] = defects.reshape(-1, defects.shape[2])
+    else:
+        at_rows[ends[1:]] = defects[:, -1]
+        pairs = np.flatnonzero(np.diff(ends) == 2)
+        middles = ends[pairs] + 1
+        exact = np.hstack([states.q_rates[middles], states.acceleration[middles]])
+        at_rows[middles] = points.changes(curve.slopes(MIDDLE)[pairs, 0] - exact)
+        at_rows[middles[~smooth[pairs] | np.isnan(defects[pairs, -1]).any(axis=1)]] = np.nan
+    return _Prepared(piece, states, ends, of_points, means, at_rows)
 
 
 def _away_from_events(t: np.ndarray, piece: Piece, opened: bool) -> np.ndarray:
@@ -190,17 +209,18 @@ def _away_from_events(t: np.ndarray, piece: Piece, opened: bool) -> np.ndarray:
 
 
 def _with_inner(
-    dynamics: Dynamics, transport: Transport, at_nodes: Points, curve: Curve, states: Evaluated, ends: np.ndarray,
+    dynamics: Dynamics, transport: Transport, curve: Curve, states: Evaluated, linear_at: np.ndarray,
     balance: tuple[float, float],
 ) -> tuple[Points, np.ndarray]:  # fmt: skip
     """Return the points of the steps of bdf, of which those within are on a curve through recorded states, and their unknowns.
 
-    `states`, `ends`: those at the nodes, and rows of unknowns to linearise at. `balance`: as in `evaluated`, of all states.
+    `states`: at the ends of steps, and `linear_at` those of them to linearise at. `balance`: as in `evaluated`, of all states.
 
     A curve stretches a stiff spring by its own error: 1e-8 m are 100 kN at 1e13 N/m. Where its defects are a large part of the
     motion, the points within a step become those of its collocation, by Newton's iteration.
     """
-    system, steps, inner = dynamics.system, np.arange(len(at_nodes.sizes)), OF_BDF.stages - 1
+    system, at_ends = dynamics.system, Points.of(dynamics.system, 1, states)
+    steps, inner, ends = np.arange(len(at_ends.sizes)), OF_BDF.stages - 1, transport.rows(states)[linear_at]
     t, z = curve.at(np.tile(OF_BDF.nodes[:-1], (len(steps), 1)), steps)
     exact, unknowns = np.empty_like(z), np.empty((len(t), ends.shape[1]))
     before, rows, balanced = np.full(len(steps), np.inf), np.arange(len(t)), None
@@ -208,7 +228,7 @@ def _with_inner(
         within = evaluated(dynamics, t[rows], z[rows, : system.n_q], z[rows, system.n_q :], balanced)
         z[rows], exact[rows] = np.hstack([within.q, within.u]), np.hstack([within.q_rates, within.acceleration])
         unknowns[rows] = transport.rows(within)
-        found = at_nodes.with_inner(t, z, exact)
+        found = at_ends.with_inner(t, z, exact)
         defects, motions = found.defects(False), found.changes(exact).reshape(len(steps), inner, -1)
         off, of_motion = (np.abs(each / found.typical).max(axis=(1, 2)) for each in (defects, motions))
         open_ = np.flatnonzero((off > ESTIMATE.large * of_motion) & (off < ESTIMATE.smooth * before))
@@ -219,8 +239,8 @@ def _with_inner(
         moves = transport.apart(own[open_], found.sizes[open_], defects[open_])
         of_inner = -moves[:, :-1].reshape(len(rows), moves.shape[2])
         z[rows] = np.hstack(displaced(system, z[rows, : system.n_q], z[rows, system.n_q :], of_inner))
-        at_ends = displaced(system, states.q[1 + open_], states.u[1 + open_], -moves[:, -1])
-        ends[1 + open_] = transport.rows(evaluated(dynamics, at_nodes.t[1 + open_], *at_ends))
+        moved = displaced(system, states.q[1 + open_], states.u[1 + open_], -moves[:, -1])
+        ends[1 + open_] = transport.rows(evaluated(dynamics, states.t[1 + open_], *moved))
         before, balanced = off, (np.full(len(rows), balance[0]), balance[1])
 
 
@@ -276,14 +296,22 @@ def _with_large_errors(
 
 def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the errors at all rows of a piece, from that at its start, and their rates, which are NaN at the start."""
-    errors, slopes = transport.along(each.points, each.sizes, each.defects, error)
-    if each.piece.points == 1:
-        errors, slopes = errors[:, -1:], slopes[:, -1:]
-    unknown = np.full((1, len(error)), np.nan)
-    return (
-        np.vstack([error[None], errors.reshape(-1, len(error))]),
-        np.vstack([unknown, slopes.reshape(-1, len(error))]),
-    )
+    of_points, slopes_there = transport.along(each.points, each.sizes, each.defects, error)
+    errors, slopes = np.full((2, len(each.states.t), len(error)), np.nan)
+    errors[0] = error
+    if each.piece.points > 1:
+        errors[1:], slopes[1:] = (of.reshape(-1, len(error)) for of in (of_points, slopes_there))
+        return errors, slopes
+    errors[each.ends[1:]], slopes[each.ends[1:]] = of_points[:, -1], slopes_there[:, -1]
+    pairs = np.flatnonzero(np.diff(each.ends) == 2)
+    ends = each.ends[pairs]
+    polynomial = Curve.through(
+        np.tile(np.append(0.0, OF_BDF.nodes), (len(pairs), 1)),
+        np.concatenate([errors[ends, None], of_points[pairs]], axis=1), np.zeros(len(pairs)), np.ones(len(pairs)),
+    )  # fmt: skip
+    errors[ends + 1] = polynomial.at(np.tile(MIDDLE, (len(pairs), 1)), np.arange(len(pairs)))[1]
+    slopes[ends + 1] = polynomial.slopes(MIDDLE)[:, 0] / each.sizes[pairs, None]
+    return errors, slopes
 
 
 def _restarted(

@@ -20,18 +20,21 @@ from .transport import Transport
 def closed(
     dynamics: Dynamics, transport: Transport, at: Evaluated, errors: np.ndarray, slopes: np.ndarray, defects: np.ndarray,
     step: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
-    """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and a mask of others.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and two masks.
+
+    The first is that of states which are far from the equations, the second that of all others than closed ones.
 
     `slopes`, `defects`: e' and d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the
     matrix of a part of it separates the directions that are stiff.
     """
     (q, u), open_ = displaced(dynamics.system, at.q, at.u, -errors), np.zeros(len(errors), dtype=bool)
+    is_open = np.ones(len(errors), dtype=bool)
     is_known = np.isfinite(slopes + defects).all(axis=1)
     open_[~is_known] = _out_of_balance(dynamics, at.at(~is_known), q[~is_known], u[~is_known])
     known = np.flatnonzero(is_known)
     if not len(known):
-        return q, u, open_
+        return q, u, open_, is_open
     rows, cj = np.arange(len(known)), CONSISTENCY.step_parts / step
     iteration = _Iteration(dynamics, transport, at.at(known), errors[known], slopes[known], defects[known], cj)
     iteration.take(rows, at.at(known))
@@ -41,7 +44,9 @@ def closed(
         iteration.take(rows, iteration.states(rows))
         rows = iteration.open(rows[iteration.sizes[rows] < CONSISTENCY.restored * sizes])
     q[known], u[known], open_[known] = iteration.q, iteration.u, iteration.fails
-    return q, u, open_
+    is_open[known] = False
+    is_open[known[iteration.open(np.arange(len(known)))]] = True
+    return q, u, open_, is_open
 
 
 def _out_of_balance(dynamics: Dynamics, at: Evaluated, q: np.ndarray, u: np.ndarray) -> np.ndarray:

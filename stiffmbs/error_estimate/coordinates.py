@@ -12,25 +12,19 @@ from ..compile.quaternions import CONJUGATE, times, times_vector
 from ..compile.system import System
 
 
-def with_rates(system: System) -> np.ndarray:
-    """Return the indices of the coordinates after those of the bodies that have a rate: counters, differential states."""
-    with_rate = np.append(np.ones(system.n_counters, dtype=bool), ~system.without_rate)
-    return system.n_pose + np.flatnonzero(with_rate)
-
-
 def width(system: System) -> int:
     """Return the length of a row."""
-    return system.n_pose + system.n_u + len(with_rates(system))
+    return system.n_pose + system.n_u + len(system.with_rates)
 
 
 def as_rows(system: System, dq: np.ndarray, du: np.ndarray) -> np.ndarray:
     """Return changes of q and u, or of their rates, as rows."""
-    return np.hstack([dq[:, : system.n_pose], du, dq[:, with_rates(system)]])
+    return np.hstack([dq[:, : system.n_pose], du, dq[:, system.with_rates]])
 
 
 def typical(system: System, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the sizes of changes (dq, du, ds) that are large for a motion: of the mechanism, a radian, the largest velocities."""
-    scale, states = system.per_velocity(system.size, 1.0), np.abs(q[:, with_rates(system)]).max(axis=0, initial=1.0)
+    scale, states = system.per_velocity(system.size, 1.0), np.abs(q[:, system.with_rates]).max(axis=0, initial=1.0)
     of_pose = np.ones((len(system.bodies), system.n_pose // len(system.bodies)))
     of_pose[:, : system.of_body.dimensions] = system.size
     return np.concatenate([of_pose.ravel(), scale * max(1.0, np.abs(u / scale).max(initial=0.0)), states])
@@ -40,7 +34,7 @@ def displaced(system: System, q: np.ndarray, u: np.ndarray, errors: np.ndarray) 
     """Return q and u changed by errors, with unit quaternions."""
     n_pose, q = system.n_pose, q.copy()
     q[:, :n_pose] += errors[:, :n_pose]
-    q[:, with_rates(system)] += errors[:, n_pose + system.n_u :]
+    q[:, system.with_rates] += errors[:, n_pose + system.n_u :]
     if system.of_body.dimensions == 3:
         p = q[:, :n_pose].reshape(len(q), -1, 7)[..., 3:]
         p /= np.linalg.norm(p, axis=-1, keepdims=True)

@@ -54,14 +54,22 @@ class Curve:
         """Return times and states at places, shape (n, m), from 0 to 1 within the steps `of_step`, one in each row."""
         t = self.start[of_step, None] + self.size[of_step, None] * places
         weights = legvander(2.0 * places - 1.0, self.coefficients.shape[1] - 1)
-        return t.ravel(), np.einsum("nmk,nkj->nmj", weights, self.coefficients[of_step]).reshape(t.size, -1)
+        states = np.einsum("nmk,nkj->nmj", weights, self.coefficients[of_step])
+        return t.ravel(), states.reshape(t.size, states.shape[2])
+
+    def slopes(self, places: np.ndarray) -> np.ndarray:
+        """Return the derivatives at places, from 0 to 1, within all steps, shape (steps, places, n), 1/s."""
+        derivatives = legder(self.coefficients, axis=1) * (2.0 / self.size)[:, None, None]
+        return np.asarray(legvander(2.0 * places - 1.0, derivatives.shape[1] - 1) @ derivatives)
 
     def errors_of_slopes(self, method: Collocation) -> np.ndarray:
-        """Return the errors of the slopes by collocation at its points of all steps, shape (steps, points, n), 1/s: z' - sum_j D_ij (z_j - z_0) / h."""
-        x, degree = 2.0 * np.append(0.0, method.nodes) - 1.0, self.coefficients.shape[1] - 1
-        values = legvander(x, degree) @ self.coefficients
-        slopes = legvander(x[1:], degree - 1) @ legder(self.coefficients, scl=2.0, axis=1)
-        return np.asarray((slopes - method.derivative @ (values[:, 1:] - values[:, :1])) / self.size[:, None, None])
+        """Return the errors of the slopes by collocation at its points of all steps, shape (steps, points, n), 1/s.
+
+        They are z' - sum_j D_ij (z_j - z_0) / h.
+        """
+        values = legvander(2.0 * np.append(0.0, method.nodes) - 1.0, self.coefficients.shape[1] - 1) @ self.coefficients
+        changes = (values[:, 1:] - values[:, :1]) / self.size[:, None, None]
+        return self.slopes(method.nodes) - method.derivative @ changes
 
 
 def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from ..sensitivity_equations.stages import Stages
 from ..solve.formulations import SI2_EXACT
 from ..solve.ida.choice import chosen
 from ..solve.radau.collocation import radau
-from .coordinates import as_rows, typical, with_rates
+from .coordinates import as_rows, typical
 from .evaluated import Evaluated
 from .parameters import ESTIMATE
 
@@ -112,7 +112,7 @@ class Transport:
         system, carried = self._dynamics.system, self._equations.coordinates
         of_v = system.n_pose + system.n_u
         dq, found = np.zeros((len(rows), system.n_q)), np.zeros((len(rows), self._equations.n))
-        dq[:, : system.n_pose], dq[:, with_rates(system)] = rows[:, : system.n_pose], rows[:, of_v:]
+        dq[:, : system.n_pose], dq[:, system.with_rates] = rows[:, : system.n_pose], rows[:, of_v:]
         du = rows[:, system.n_pose : of_v]
         found[:, self._equations.independent] = np.hstack([dq[:, carried.independent], du[:, carried.independent_u]])
         return found

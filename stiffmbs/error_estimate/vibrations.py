@@ -16,7 +16,7 @@ import numpy as np
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..solve.error_control.newton import stiffness_at
-from .coordinates import pose_rates, with_rates
+from .coordinates import pose_rates
 from .evaluated import Evaluated
 from .parameters import ESTIMATE
 from .transport import OF_BDF
@@ -99,4 +99,4 @@ def _as_rows(dynamics: Dynamics, states: Evaluated, moved: np.ndarray, moving: n
     """Return rows (dq, du, ds) from displacements and velocities of all bodies in their axes, as columns."""
     system, count = dynamics.system, moved.shape[1]
     of_poses = pose_rates(system, np.tile(states.q[0], (count, 1)), moved.T)
-    return np.hstack([of_poses, moving.T, np.zeros((count, len(with_rates(system))))])
+    return np.hstack([of_poses, moving.T, np.zeros((count, len(system.with_rates)))])

@@ -206,7 +206,7 @@ def bars(
             ends[beyond, end], at_ends[beyond, end] = (each[all_names, at][beyond] for each in (values, errors))
         release(*channels.values())
     sampled = _between_outputs(times, channels, ends, parts, numbers_at_once)
-    widths = np.fmax(at_ends, ROUNDING * np.abs(ends)) + sampled
+    widths = np.maximum(at_ends, ROUNDING * np.abs(ends)) + sampled  # NaN where the error there is unknown
     numbers = np.column_stack([over_time, np.where(np.isinf(ends), np.nan, widths), sampled]).tolist()
     return {name: ErrorBar(*each) for name, each in zip(names, numbers, strict=True)}
 

@@ -321,6 +321,22 @@ def test_stiff_beams_that_turn_are_not_lost():
         assert 0.3 < ratio(found, channel, exact[channel]) < 3.0
 
 
+def test_a_peak_beside_values_that_are_none_has_no_bar():
+    """The error of a root is unknown beside the edge of its range: its least value had that of rounding."""
+    scene = stiffmbs.read_scene("""
+        gravity: [0, -9.81]
+        bodies: {p: {mass: 1, inertia: 0.01, position: [0.3, 0]}}
+        joints: {h: {type: revolute, i: {body: p, point: [-0.3, 0]}, j: ground}}
+        requests: {half: sqrt(p.x)}
+        run: {duration: 2, points: 101, rtol: 1e-3}
+    """)
+    found = stiffmbs.run(scene, solver="bdf", errors=True)
+    truth = stiffmbs.run(scene, solver="radau", rtol=1e-10, errors=False)
+    error = np.abs(found["half"] - truth["half"])[np.nanargmin(found["half"])]
+    assert not found.errors["half"].least < 0.2 * error
+    assert np.isfinite(found.errors["half"].greatest)
+
+
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_matrices_may_be_in_memory_one_by_one(solver):
     """The estimate of a car failed with an index of an empty group of blocks, where each block filled the memory allowed."""
