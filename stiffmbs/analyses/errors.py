@@ -123,7 +123,8 @@ def _of_second_runs(settings: RunSettings, trajectory: Trajectory) -> Iterator[t
         taken = float(np.ptp(trajectory.t)) / _steps(trajectory)  # reduced to divide output intervals
         yield changed(settings, {"step": 0.5 * taken}), 0.5**order, "with half the step"
         return
-    part, longest = _part_of_second(settings.rtol), float(np.diff(trajectory.step_times).max(initial=0.0))
+    part, ends = _part_of_second(settings.rtol), np.append(trajectory.t[0], trajectory.step_times)
+    longest = float(np.diff(ends).max(initial=0.0))
     for repeats in range(1, MOST_REPEATS + 1):
         found = _with_errors(settings, part**repeats, longest if repeats > 1 else 0.0)
         yield found, part, f"at rtol {found.rtol:.0e}"

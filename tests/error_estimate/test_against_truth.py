@@ -321,6 +321,25 @@ def test_stiff_beams_that_turn_are_not_lost():
         assert 0.3 < ratio(found, channel, exact[channel]) < 3.0
 
 
+def test_a_run_of_one_explicit_step_is_compared_with_shorter_ones():
+    """The second run took the same step: all errors were zero."""
+    scene = stiffmbs.read_scene("""
+        gravity: [0, -9.81]
+        bodies: {p: {mass: 1, inertia: 0.01, position: [0.3, 0]}, q: {mass: 1, inertia: 0.01, position: [0.9, 0]}}
+        joints:
+          h: {type: revolute, i: {body: p, point: [-0.3, 0]}, j: ground}
+          g: {type: revolute, i: {body: q, point: [-0.3, 0]}, j: {body: p, point: [0.3, 0]}}
+        forces:
+          c: {type: spring_damper, i: q, j: {body: ground, point: [0.9, 0.5]}, stiffness: 1e6, damping: 100, free_length: 0.5}
+        run: {duration: 1e-3, points: 11}
+    """)
+    found = stiffmbs.run(scene, solver="projected", rtol=1e-3, errors=True)
+    truth = stiffmbs.run(scene, solver="projected", rtol=1e-12, max_step=1e-4, errors=False)
+    assert found.solver["steps"] == 1
+    for name in ("q.alpha", "q.omega"):
+        assert 0.5 < ratio(found, name, truth[name]) < 2.0, name
+
+
 def test_a_peak_beside_values_that_are_none_has_no_bar():
     """The error of a root is unknown beside the edge of its range: its least value had that of rounding."""
     scene = stiffmbs.read_scene("""
