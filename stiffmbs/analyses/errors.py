@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ import numpy as np
 from ..error_estimate.parameters import ESTIMATE
 from ..errors import StiffmbsError
 from ..model.settings import LARGEST_RTOL, RunSettings
-from ..notes import NoteKind, Severity
+from ..notes import Note, NoteKind, Severity
 from ..results.error_bars import ErrorEstimate
 from ..solve.sampling import restarts
 from ..solve.settings import changed, misses_breakpoints, traits_of
@@ -56,6 +56,8 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
     traits = traits_of(job.settings)
     if len(solution.time) < 2 or solution.outcome is Outcome.INTERRUPTED or traits.exact:
         return solution
+    if solution.notes and _may_differ(solution.notes):
+        return _without(solution, "not estimated: more than one motion may follow, as a note says")
     with in_use(job.settings.tuning), np.errstate(all="ignore"):
         if trajectory.recorded:
             from ..error_estimate.estimate import estimated
@@ -69,6 +71,14 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
     return _without(
         solution, f"not estimated: that takes some time for {_steps(trajectory)} steps of this model; {ASK}"
     )
+
+
+def _may_differ(notes: Iterable[Note]) -> bool:
+    """Return True if a note says that the run follows one of several motions: its difference from another one is no error."""
+    from ..run_checks.motion import SEVERAL_MOTIONS
+    from ..run_checks.singular_poses import SEVERAL
+
+    return any(SEVERAL in note or note.kind == SEVERAL_MOTIONS.name for note in notes)
 
 
 def _steps(trajectory: Trajectory) -> int:

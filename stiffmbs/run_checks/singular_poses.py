@@ -17,12 +17,12 @@ from ..redundancy.listed import listed
 from ..redundancy.loops import loops
 from .parameters import RUN_CHECKS
 
+SEVERAL = "more than one motion may follow"
+"""Words of the notes on poses after which the results are one of several motions."""
 _AT = "near t = {t:.6g} s, where the equations of {joints} are nearly dependent: "
 BRANCHES = NoteKind(
     "singular-pose",
-    "passes a singular pose "
-    + _AT
-    + "more than one motion may follow, and the motion depends on the last digits of the "
+    "passes a singular pose " + _AT + f"{SEVERAL}, and the motion depends on the last digits of the "
     "geometry ({where})",
 )
 MAGNIFIES = NoteKind(
@@ -32,8 +32,9 @@ MAGNIFIES = NoteKind(
 )
 NOT_EXAMINED = NoteKind(
     "singular-pose-not-examined",
-    "may pass a singular pose near t = {t:.6g} s or later, where more than one motion may follow; the rerun that examines "
-    "it was aborted",
+    "may pass a singular pose near t = {t:.6g} s or later, where "
+    + SEVERAL
+    + "; the rerun that examines it was aborted",
 )
 
 
@@ -260,5 +261,5 @@ def _notes(pose: SingularPose, d: float, rtol: float) -> Iterator[Note]:
     if _decided_by_chance(d):
         yield BRANCHES(pose.joints[0], t=pose.t, joints=joints, where=where)
     elif magnified * rtol >= RUN_CHECKS.worth_telling:
-        decided = "more than one motion may follow, and " if magnified * rtol >= RUN_CHECKS.decided else ""
+        decided = f"{SEVERAL}, and " if magnified * rtol >= RUN_CHECKS.decided else ""
         yield MAGNIFIES(pose.joints[0], t=pose.t, joints=joints, where=where, decided=decided, factor=magnified)
