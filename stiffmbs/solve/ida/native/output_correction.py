@@ -7,7 +7,7 @@ restores the equilibrium of stiff forces.  Small rotations since IDA's last setu
 iteration has its own factors, used as long as they converge.
 
 The equations have other solutions: forces of inertia at high velocities also balance spurious forces.  Large spurious
-forces lead the iteration there.  So it may move a state at most by the change over the step and the tolerance.
+forces lead the iteration there.  So moves are bounded: by some tolerances, or by the change over the step if that is more.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
@@ -134,7 +134,7 @@ def _corrected(b, e):
 
 @compiled
 def _is_near(b, e, t):
-    """Return True if corrections moved an interpolated state at most by the change over the step and the tolerance.
+    """Return True if corrections moved an interpolated state by no more than its error may be, or the change over the step.
 
     The error test bounds those of a prediction.
     """
@@ -145,7 +145,7 @@ def _is_near(b, e, t):
     call_int(b.interpolate, (b.memory, t, int32(0), b.at_correction))
     for k in range(e.n):
         b.correction[k] -= b.y[k]
-    return _in_tolerances(b, e) <= 1.0 + change
+    return _in_tolerances(b, e) <= max(POLISHING.most_moved, change)
 
 
 @compiled
