@@ -63,6 +63,8 @@ class PolishingParameters:
     """Allowed imbalance of the forces on a body between steps, relative to the largest force and to rtol."""
     most_corrections: int = 8
     """Largest number of corrections of a state, of radau too."""
+    most_moved: float = 30.0
+    """Largest move of a state within a step by corrections, in tolerances, of radau too; farther away are other solutions."""
     slowest: float = 0.3
     """Ratio of successive corrections above which factors are replaced, or the iteration fails."""
     rounded_off: float = 1e-2

@@ -229,7 +229,7 @@ def _corrected_at(c, t):
     """
     if (t == c.returned and t != c.internal) or not _interpolates_stiffly(c):
         return False
-    return corrected(c.output_correction, c.state, c.equations, t)
+    return corrected(c.output_correction, c.state, c.equations, t, c.size)
 
 
 @compiled
@@ -254,7 +254,7 @@ def _closed_at_end(c):
     own.current = b.current
     own.enough = b.enough
     own.balanced = b.balanced
-    return corrected(c.closing, c.state, c.equations, c.returned)
+    return corrected(c.closing, c.state, c.equations, c.returned, c.size)
 
 
 @compiled

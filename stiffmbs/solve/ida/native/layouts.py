@@ -64,7 +64,7 @@ restart after it; number of breakpoints passed, and steps before the last."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL, "failed": INT_CELL, "first_failed": FLOAT_CELL,
-    "balanced": FLOAT_CELL, "renewed": INT_CELL, "force_end": INTS, "force_row": INTS,
+    "balanced": FLOAT_CELL, "renewed": INT_CELL, "step": FLOAT_CELL, "force_end": INTS, "force_row": INTS,
     "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
     "predicts": INT_CELL, "predict": INT, "predict_rate": INT, "at_zero": INT,
     "memory": INT, "interpolate": INT, "weights": INT, "setup": INT, "solve": INT,
@@ -76,7 +76,7 @@ OUTPUT_CORRECTION = Layout({
 
 Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
 within it are corrected; number of states that could not be corrected, time of the first, s; allowed imbalance relative to the largest force; 1 if the matrix
-of the iteration is newer than the stiffness.  Then rows of the equations of motion, forces
+of the iteration is newer than the stiffness; length of the step, s.  Then rows of the equations of motion, forces
 before moments, and their ends; rows of position constraints; system that closes joints; memory for a pose; 1 to correct
 the prediction of the current step; zeros."""
 

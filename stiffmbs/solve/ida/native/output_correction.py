@@ -5,6 +5,9 @@ errors in positions cause forces far beyond the actual ones.  Newton's iteration
     M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
 restores the equilibrium of stiff forces.  Small rotations since IDA's last setup also rotate stiff directions, so this
 iteration has its own factors, used as long as they converge.
+
+The equations have other solutions: forces of inertia at high velocities also balance spurious forces.  Large spurious
+forces lead the iteration there.  So moves are bounded: by some tolerances, or by the change over the step if that is more.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
@@ -110,16 +113,39 @@ def _left(b, s, e, t):
 
 
 @compiled
-def _corrected(b, e):
-    """Apply one correction; return its size in units of the tolerance."""
-    call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
+def _in_tolerances(b, e):
+    """Return the RMS of the vector of corrections in units of the tolerance."""
     squares = 0.0
     for k in range(e.n):
-        b.y[k] -= b.correction[k]
-        b.yp[k] -= b.current * b.correction[k]
         part = b.correction[k] * b.weight[k]
         squares += part * part
     return (squares / e.n) ** 0.5
+
+
+@compiled
+def _corrected(b, e):
+    """Apply one correction; return its size in units of the tolerance."""
+    call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
+    for k in range(e.n):
+        b.y[k] -= b.correction[k]
+        b.yp[k] -= b.current * b.correction[k]
+    return _in_tolerances(b, e)
+
+
+@compiled
+def _is_near(b, e, t):
+    """Return True if corrections moved an interpolated state by no more than its error may be, or the change over the step.
+
+    The error test bounds those of a prediction.
+    """
+    if b.predicts:
+        return True
+    call_int(b.interpolate, (b.memory, t, int32(1), b.at_correction))
+    change = b.step * _in_tolerances(b, e)
+    call_int(b.interpolate, (b.memory, t, int32(0), b.at_correction))
+    for k in range(e.n):
+        b.correction[k] -= b.y[k]
+    return _in_tolerances(b, e) <= max(POLISHING.most_moved, change)
 
 
 @compiled
@@ -178,13 +204,13 @@ def _by_new_factors(b, s, e, t, parts):
 
 @compiled
 def _converged(b, s, e, t):
-    """Correct the state by new factors; return False if it does not converge.
+    """Correct the state by new factors; return False if it does not converge, or to another solution.
 
     The geometric stiffness of spurious forces may exceed inertia. Matrices of shorter steps remove these forces first.
     """
     parts = 1.0
     for _ in range(POLISHING.most_corrections):
-        if _by_new_factors(b, s, e, t, parts):
+        if _by_new_factors(b, s, e, t, parts) and _is_near(b, e, t):
             return True
         parts *= CONSISTENCY.step_parts
         if not _placed(b, t):
@@ -217,9 +243,13 @@ def count_failure(b, t):
 
 
 @compiled
-def corrected(output_correction, state, equations, t):
-    """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used."""
+def corrected(output_correction, state, equations, t, step):
+    """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used.
+
+    `step`: length of the step that contains the time.
+    """
     b = output_correction_view(output_correction)
+    b.step = step
     s = state_view(state)
     e = equations_view(equations)
     if not _placed(b, t):
@@ -230,7 +260,7 @@ def corrected(output_correction, state, equations, t):
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.factored > 0.0:
-        if _remaining(b, s, e, t, False) == 0.0:
+        if _remaining(b, s, e, t, False) == 0.0 and _is_near(b, e, t):
             return True
         _placed(b, t)
         _look(b, s, e, t)

@@ -24,8 +24,8 @@ from stiffmbs.solve.radau.native.newton import (
 
 ROUNDING = 1e-11
 """Relative size of corrections that are rounding."""
-MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
-"""Largest changes of the state at the end of a step, in tolerances, and of states within it, in those of the estimate."""
+MOST_MOVED = 0.5
+"""Largest change of the state at the end of a step, in tolerances."""
 AGREED, CLOSED, OPEN = range(3)
 UNKNOWN, SUFFICE, TOO_FEW = range(3)
 """Whether interpolated corrections suffice in a step."""
@@ -131,7 +131,7 @@ def _corrected(x, c, place, count):
 @compiled
 def _most_moved_within(c):
     """Return the largest change of a state within a step, in tolerances: its error is that of the estimate."""
-    return MOST_MOVED_WITHIN * max(1.0, c.relaxed)
+    return POLISHING.most_moved * max(1.0, c.relaxed)
 
 
 @compiled
