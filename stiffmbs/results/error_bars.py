@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -27,8 +28,6 @@ SAFETY = 2.0
 NO_RESTARTS = np.empty(0)
 FINER = 1.1
 """Factor on the excess at finer instants, as the finest show a little more."""
-NEIGHBOURS = 3
-"""Instants next to a peak that bound it."""
 ARRAYS = 8
 """Arrays of the size of the values that the search of peaks holds."""
 
@@ -226,22 +225,28 @@ def _between_outputs(
     owners = np.argmax([np.ptp(part.values, axis=1) for part in parts], axis=0)  # the mechanism of each channel
     for number, part in enumerate(parts):
         own = np.flatnonzero(np.isfinite(ends).all(axis=1) & (owners == number))
-        shown = [channels[names[k]] for k in own.tolist()]
-
-        def values(block: slice, part=part, own=own, shown=shown) -> tuple[np.ndarray, np.ndarray]:
-            at = times[block]
-            inner = part.t[np.searchsorted(part.t, at[0]) : np.searchsorted(part.t, at[-1], side="right")]
-            t = np.sort(np.concatenate([at, inner]))
-            t = t[np.diff(t, prepend=-np.inf) > 0.0]
-            found = np.array([np.interp(t, part.t, part.values[k]) for k in own])
-            found[:, np.searchsorted(t, at)] = [each[block] for each in shown]
-            release(*shown)
-            return t, found
-
         if len(own):
+            values = partial(_with_nodes, times, [channels[names[k]] for k in own.tolist()], part.t, part.values[own])
             at_once = numbers_at_once // (len(own) * (1 + len(part.t) // len(times)))
             found[own] = _both_ends(len(times), values, ends[own], part.restarts, at_once)
     return found
+
+
+def _with_nodes(
+    times: np.ndarray, shown: Sequence[np.ndarray], nodes: np.ndarray, values: np.ndarray, block: slice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return some output times with the nodes between them, and the values of channels there, shape (channels, n).
+
+    `shown`: values at all output times. `values`: those at the nodes.
+    """
+    at = times[block]
+    inner = nodes[np.searchsorted(nodes, at[0]) : np.searchsorted(nodes, at[-1], side="right")]
+    t = np.sort(np.concatenate([at, inner]))
+    t = t[np.diff(t, prepend=-np.inf) > 0.0]
+    found = np.array([np.interp(t, nodes, each) for each in values])
+    found[:, np.searchsorted(t, at)] = [each[block] for each in shown]
+    release(*shown)
+    return t, found
 
 
 def _both_ends(
@@ -253,8 +258,9 @@ def _both_ends(
     last of some of these. `at_once`: number of them that are examined together.
     """
     found, rows = np.zeros(limits.shape), 1 + at_once // ARRAYS
+    overlap = 3  # a peak at the edge of a block is one within the next, with two instants on either side
     for first in range(0, count, rows):
-        t, some = values(slice(max(first - NEIGHBOURS, 0), min(first + rows + NEIGHBOURS, count)))
+        t, some = values(slice(max(first - overlap, 0), min(first + rows + overlap, count)))
         for end, sign in enumerate((-1.0, 1.0)):
             found[:, end] = np.maximum(found[:, end], _excess(t, sign * some, sign * limits[:, end], restarts))
     return found
@@ -285,19 +291,27 @@ def bars_by_difference(
     peaks = [(int(np.nanargmin(channels[name])), int(np.nanargmax(channels[name]))) for name in known]
     limits = np.array([channels[name][list(pair)] for name, pair in zip(known, peaks, strict=True)])
 
-    def both(block: slice) -> tuple[np.ndarray, np.ndarray]:
-        first = at[block.start]
-        whole = slice(first, at[block.stop - 1] + 1)
-        some = np.array([others[name][whole] for name in known])
-        some[:, at[block] - first] = [channels[name][block] for name in known]
-        return times[whole], some
-
+    shown, fine = ([of[name] for name in known] for of in (channels, others))
     at_once = numbers_at_once // (len(known) * (1 + len(times) // len(at)))
-    sampled = _both_ends(len(at), both, limits, restarts, at_once).tolist()
+    sampled = _both_ends(len(at), partial(_with_instants, times, shown, fine, at), limits, restarts, at_once).tolist()
     for name, pair, between_them in zip(known, peaks, sampled, strict=True):
         least, greatest = (float(errors[name][peak]) + excess for peak, excess in zip(pair, between_them, strict=True))
         found[name] = ErrorBar(float(np.nanmax(errors[name])), least, greatest, *between_them)
     return found
+
+
+def _with_instants(
+    times: np.ndarray, shown: Sequence[np.ndarray], fine: Sequence[np.ndarray], at: np.ndarray, block: slice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return times from the first to the last of some reported ones, and the values of channels there, shape (channels, n).
+
+    `shown`, `fine`: values at all reported times, and at all times. `at`: places of the reported ones.
+    """
+    first = at[block.start]
+    whole = slice(first, at[block.stop - 1] + 1)
+    found = np.array([each[whole] for each in fine])
+    found[:, at[block] - first] = [each[block] for each in shown]
+    return times[whole], found
 
 
 def _jump_beside(values: np.ndarray, steps: np.ndarray, part: float) -> np.ndarray:

@@ -159,7 +159,6 @@ def most_reliable_digits():
 
 DECISIONS = {
     "results.error_bars:ARRAYS": lambda: len(blocks_of_instants()),
-    "results.error_bars:NEIGHBOURS": lambda: blocks_of_instants()[0].stop - blocks_of_instants()[1].start,
     "results.digits:MOST_DIGITS": most_reliable_digits,
     "results.energy_balance:MOST_INSTANTS": instants_of_a_balance,
     "results.energy_balance_notes:BROKEN": largest_energy_without_a_check,
@@ -187,7 +186,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
-    "results.error_bars:ARRAYS": 10, "results.error_bars:NEIGHBOURS": 6,
+    "results.error_bars:ARRAYS": 10,
     "results.digits:MOST_DIGITS": 12,
     "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance_notes:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,

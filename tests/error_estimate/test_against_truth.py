@@ -373,7 +373,15 @@ def test_matrices_may_be_in_memory_one_by_one(solver):
         for tuning in ({}, {"numbers_at_once": 1})
     )
     for name, bar in by_one.errors.items():
-        assert np.isclose(bar.over_time, found.errors[name].over_time, rtol=1e-6, atol=1e-12), name
+        for field in (
+            "over_time",
+            "least",
+            "greatest",
+        ):  # peaks do not depend on the blocks of times in which they are searched
+            assert np.isclose(getattr(bar, field), getattr(found.errors[name], field), rtol=1e-6, atol=1e-12), (
+                name,
+                field,
+            )
 
 
 @pytest.mark.parametrize("scheme, step", [("euler_cromer", 1e-3), ("rk4", 6e-3)])

@@ -249,7 +249,7 @@ class Jumps:
     def resolution(self) -> tuple[np.ndarray, float]:
         """Factors from velocities to m/s, of shape (n_u,), with the mechanism's size for angular ones, and the tolerance of the run.
 
-        A change up to it, m/s or m, is no jump, whatever the velocities.
+        A change up to it, m/s or m, is no jump at any velocities.
         """
         return self._dynamics.kept("velocity jumps", self._settings, self._scale_and_least)
 
