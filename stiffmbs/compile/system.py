@@ -137,7 +137,7 @@ class System:
         """Indices of the coordinates that are algebraic states."""
         return self.first_state + np.flatnonzero(self.algebraic)
 
-    @property
+    @cached_property
     def sampled(self) -> np.ndarray:
         """Mask of the states that are constant between samples, shape (states,)."""
         return np.asarray(self.sampling[:, 0] > 0)
@@ -252,7 +252,14 @@ class System:
 
     def n_values(self, term_set: str) -> int:
         """Return the number of kernel values of a set; constants follow them."""
-        return sum(group.count * group.entries[term] for group in self.groups for term in TERM_SETS[term_set])
+        if term_set not in self._n_values:
+            of_groups = (group.count * group.entries[term] for group in self.groups for term in TERM_SETS[term_set])
+            self._n_values[term_set] = sum(of_groups)
+        return self._n_values[term_set]
+
+    @cached_property
+    def _n_values(self) -> dict[str, int]:
+        return {}
 
     def n_operations(self, term_set: str) -> int:
         """Return the number of arithmetic operations in the kernels of a set, for cost estimates."""

@@ -6,6 +6,7 @@ All three are [D J^T; J 0] [x; w] = [a; b], solved by a sparse LU with a constan
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import repeat
 from typing import Any
 
@@ -124,4 +125,9 @@ class SaddlePoint:
 
     def forget_pivots(self) -> None:
         """Search for new pivots in the next factorisation."""
-        self.factors_table.view(FACTORS.cells)[0]["ready"] = 0
+        self._cells["ready"] = 0
+
+    @cached_property
+    def _cells(self) -> Any:
+        """Numbers of `factors_table` by name."""
+        return self.factors_table.view(FACTORS.cells)[0]
