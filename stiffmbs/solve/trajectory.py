@@ -129,15 +129,17 @@ class Grid:
 
     def before(self, t: np.ndarray, features: InputFeatures) -> np.ndarray:
         """Return times, s, of which those at breakpoints are just before them; the start of the grid is just after one."""
-        breakpoints = features.all_breakpoints
-        before = breakpoints[breakpoints > self.start + 2.0 * self.aside] - self.aside
-        return np.maximum(_nearest(t, before, self.aside), self.start)
+        breakpoints, aside = features.all_breakpoints, self.aside
+        before = breakpoints[breakpoints > self.start + 2.0 * aside] - aside
+        return np.maximum(_nearest(t, before, aside), self.start)
 
     def before_breakpoints(self, features: InputFeatures) -> Grid:
         """Return the grid with its output times and end just before breakpoints at them.
 
         A solver and the evaluation of its rows thus have one side. `shown` returns the times of the grid itself.
         """
+        if not len(features.all_breakpoints):
+            return self
         times = None if self.times is None else self.before(self.times, features)
         return replace(self, end=float(self.before(np.array([self.end]), features)[0]), times=times)
 
