@@ -162,14 +162,14 @@ class HoveringEvents:
     """Event functions of one run that stay about zero, up to the precision of their evaluation.
 
     An event function that has returned to zero from within the precision of its evaluation has had no event but
-    errors. Its next event is where it leaves that band. `chattering`: monitor of the same run. `rtol`: relative tolerance. `band` of shape
+    errors. A restart that takes a function back across zero shows that its precision is that move at best. Its next event is where it leaves that band. `chattering`: monitor of the same run. `rtol`: relative tolerance. `band` of shape
     (n_event_functions,): half width of the band, 0 for a function with an event at zero.
     """
 
     def __init__(self, dynamics: Dynamics, chattering: Chattering, rtol: float) -> None:
         self._dynamics, self._chattering, self._rtol = dynamics, chattering, rtol
         self.band = np.zeros(dynamics.system.n_event_functions)
-        self._left = self.band
+        self._left, self._beyond, self._moved = (np.zeros_like(self.band) for _ in range(3))
 
     @property
     def any(self) -> bool:
@@ -185,8 +185,10 @@ class HoveringEvents:
         at_zero, self._left = passed[self.band[passed] == 0.0], np.zeros_like(self.band)
         self._left[passed] = self.band[passed]
         self.band[passed] = 0.0
+        self._beyond[:] = 0.0
         if len(at_zero):
-            noise = noise_of(self._dynamics, t, q, u, self._rtol, farthest)
+            self._beyond[at_zero] = self._values(t, q, u)[at_zero]
+            noise = np.maximum(noise_of(self._dynamics, t, q, u, self._rtol, farthest), self._moved)
             hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
             if len(hovering):
                 self._chattering.begin(t, q, u)
@@ -197,13 +199,24 @@ class HoveringEvents:
 
         The step had larger errors than its tolerance, as velocities have that no error test includes: the bands are doubled.
         """
-        if not self._left.any():
+        self._moved[:] = 0.0
+        if not (self._left.any() or self._beyond.any()):
             return False
         state = self._dynamics.state
-        state.evaluate("event_function", t)
-        back = abs(state.values["event_function"][: len(self.band)]) < (1.0 - SEARCH.margin) * self._left
+        values = self._values(t, state.q, state.u)
+        across = values * self._beyond < 0.0
+        self._moved[across] = 2.0 * abs(values[across])
+        back = abs(values) < (1.0 - SEARCH.margin) * self._left
         self.band[back] = 2.0 * self._left[back]
         return bool(back.any())
+
+    def _values(self, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Return the event functions at a state."""
+        state = self._dynamics.state
+        with state.unchanged():
+            state.q[:], state.u[:] = q, u
+            state.evaluate("event_function", t)
+        return state.values["event_function"][: len(self.band)].copy()
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
