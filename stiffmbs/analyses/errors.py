@@ -133,7 +133,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
 def _second_run(
     settings: RunSettings, trajectory: Trajectory, repeats: int, longest: float
 ) -> tuple[RunSettings, float, str, bool]:
-    """Return the settings of a second run, the expected part of its errors in those of the first run, how it is run, and if it is the last.
+    """Return the settings of a second run, its errors in those of the first one, how it is run, and True if it is the last.
 
     `repeats`: number of the run, from 1. `longest`: step of the first run to reduce, s, or 0.
     """
