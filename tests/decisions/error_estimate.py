@@ -34,7 +34,7 @@ def shift_of_time():
         return evaluated(dynamics, t, *states)
 
     with patch.object(restarts, "evaluated", noted):
-        restarts.is_autonomous(dynamics, at)
+        restarts.autonomous(dynamics, at)
     return max(times)
 
 
