@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..elements.element import Element, Joint
 from ..elements.joints.drive import Drive
 from ..elements.requests.output import CONTINUOUS_ANGLES
 from ..elements.turns import INITIAL_COUNT, TURN
+from ..frozen_dataclass import dataclass
 from ..reading.formula.formula import Formula
 from .dynamics import Dynamics
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 from pydantic import Field
 
+from ...frozen_dataclass import dataclass
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic, sp
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from pydantic import Field, model_validator
 
+from ...frozen_dataclass import dataclass
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp
 from ..roads.envelope import Envelope

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from ...errors import InputError
+from ...frozen_dataclass import dataclass
 from ...reading.fields import Described
 from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import Content, read_yaml
