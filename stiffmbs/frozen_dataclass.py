@@ -13,10 +13,6 @@ from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, NoReturn
 
-_INDENT = "\n    "
-_MADE = object()
-"""Default of parameters whose field has a default factory."""
-
 if TYPE_CHECKING:
     from dataclasses import dataclass
 else:
@@ -37,6 +33,13 @@ else:
         return described
 
 
+class _Factory:
+    """Default of a parameter whose field has a default factory."""
+
+    def __repr__(self) -> str:
+        return "<factory>"
+
+
 class _InitWhenRead:
     """Descriptor that compiles ``__init__`` of a dataclass and takes its place."""
 
@@ -51,20 +54,21 @@ class _InitWhenRead:
 
 def _init_of(described: Any) -> Any:
     """Return ``__init__`` of a dataclass: it assigns the fields, and calls ``__post_init__``."""
-    names: dict[str, Any] = {"__name__": described.__module__, "_assign": object.__setattr__, "_MADE": _MADE}
+    names: dict[str, Any] = {"__name__": described.__module__, "_assign": object.__setattr__, "_factory": _Factory()}
     parameters, lines = ["self"], []
     for field in fields(described):
-        name, has_factory = field.name, field.default_factory is not MISSING
-        names[f"_default_{name}"] = field.default_factory if has_factory else field.default
-        value = f"_default_{name}()" if has_factory else name
+        name, value, default = field.name, field.name, ""
+        if field.default_factory is not MISSING:
+            names[f"_made_{name}"], default = field.default_factory, "=_factory"
+            value = f"_made_{name}() if {name} is _factory else {name}" if field.init else f"_made_{name}()"
+        elif field.default is not MISSING:
+            names[f"_default_{name}"], default = field.default, f"=_default_{name}"
         if field.init:
-            default = "" if names[f"_default_{name}"] is MISSING else "=_MADE" if has_factory else f"=_default_{name}"
             parameters.append(name + default)
-            value = f"{value} if {name} is _MADE else {name}" if has_factory else value
-        if field.init or has_factory:  # other fields are attributes of the class
+        if field.init or value != name:  # other fields are attributes of the class
             lines.append(f"_assign(self, {name!r}, {value})")
     lines += ["self.__post_init__()"] * hasattr(described, "__post_init__")
-    exec(f"def __init__({', '.join(parameters)}):{_INDENT}{_INDENT.join(lines or ['pass'])}", names)
+    exec(f"def __init__({', '.join(parameters)}): {'; '.join(lines) or 'pass'}", names)
     made = names["__init__"]
     made.__qualname__ = f"{described.__qualname__}.__init__"
     made.__annotations__ = {field.name: field.type for field in fields(described) if field.init} | {"return": None}
