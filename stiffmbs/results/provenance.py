@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..frozen_dataclass import dataclass
-from ..model.files.stages import WrittenScene
+from ..model.files.written_scene import WrittenScene
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings
