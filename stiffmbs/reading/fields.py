@@ -73,7 +73,8 @@ def _evaluate_annotations(namespace: dict[str, Any]) -> None:
     They stay texts if a name is unknown as yet, or if names of a function around the class may be meant.
     """
     texts = namespace.get("__annotations__", {})
-    if texts and "<locals>" not in namespace["__qualname__"] and all(type(text) is str for text in texts.values()):
+    is_of_module = "<locals>" not in namespace.get("__qualname__", "<locals>")
+    if texts and is_of_module and all(type(text) is str for text in texts.values()):
         with suppress(NameError):
             types = eval(f"{', '.join(texts.values())},", vars(sys.modules[namespace["__module__"]]), namespace)
             texts.update(zip(texts, types, strict=True))
