@@ -25,8 +25,8 @@ from ..reading.marker import MarkerReference
 
 if TYPE_CHECKING:
     from ..model.model_data import ModelData
-    from .forces.friction import Loads
     from .initial_pose import InitialPose
+    from .loads import Loads
 
 Part = TypeVar("Part")
 Symbolic = Any

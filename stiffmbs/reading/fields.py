@@ -75,7 +75,7 @@ def _evaluate_annotations(namespace: dict[str, Any]) -> None:
     texts = namespace.get("__annotations__", {})
     is_of_module = "<locals>" not in namespace.get("__qualname__", "<locals>")
     if texts and is_of_module and all(type(text) is str for text in texts.values()):
-        with suppress(NameError):
+        with suppress(Exception):  # pydantic reports faults
             types = eval(f"{', '.join(texts.values())},", vars(sys.modules[namespace["__module__"]]), namespace)
             texts.update(zip(texts, types, strict=True))
 
