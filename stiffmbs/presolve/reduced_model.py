@@ -95,7 +95,7 @@ class ReducedModel:
 
     def on_parent(self, body: str) -> tuple[str, Any]:
         """Return the solved body that carries a body, and the placement of the latter on it."""
-        return self.members.get(body) or (body, geometry(self.dimensions).Placement())
+        return self.members.get(body) or (body, geometry(self.dimensions).Placement.model_construct())
 
 
 def geometry(dimensions: int) -> ModuleType:
