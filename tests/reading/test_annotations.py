@@ -61,5 +61,5 @@ def test_a_class_without_a_source_is_described_too():
 
 def test_a_name_that_stays_unknown_is_told_on_first_use():
     exec("class Wrong(Described):\n    mass: 'Nothing'", names := {"Described": Described, "__name__": __name__})
-    with pytest.raises(InputError, match="Wrong.* not fully defined"):
+    with pytest.raises(InputError, match=r"Wrong.* not fully defined"):
         names["Wrong"](mass=1)
