@@ -11,7 +11,7 @@ from dataclasses import MISSING, FrozenInstanceError, fields
 from dataclasses import dataclass as compiled_dataclass
 from operator import attrgetter
 from reprlib import recursive_repr
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from dataclasses import dataclass
@@ -24,7 +24,7 @@ else:
         if not frozen:
             return compiled_dataclass(described, eq=eq, repr=repr)
         compiled_dataclass(described, init=False, eq=False, repr=False)
-        methods = {"__init__": _InitWhenRead(described), "__setattr__": _refuse_value, "__delattr__": _refuse_deletion}
+        methods = {"__init__": _InitWhenRead(described), "__setattr__": _assign, "__delattr__": _delete}
         methods |= {"__repr__": _represented} if repr else {}
         methods |= {"__eq__": _is_equal, "__hash__": _hash, "_compared": _compared(described)} if eq else {}
         for name, method in methods.items():
@@ -54,7 +54,7 @@ class _InitWhenRead:
 
 def _init_of(described: Any) -> Any:
     """Return ``__init__`` of a dataclass: it assigns the fields, and calls ``__post_init__``."""
-    names: dict[str, Any] = {"__name__": described.__module__, "_assign": object.__setattr__, "_factory": _Factory()}
+    names: dict[str, Any] = {"__name__": described.__module__, "_put": object.__setattr__, "_factory": _Factory()}
     parameters, lines = ["self"], []
     for field in fields(described):
         name, value, default = field.name, field.name, ""
@@ -66,7 +66,7 @@ def _init_of(described: Any) -> Any:
         if field.init:
             parameters.append(name + default)
         if field.init or value != name:  # other fields are attributes of the class
-            lines.append(f"_assign(self, {name!r}, {value})")
+            lines.append(f"_put(self, {name!r}, {value})")
     lines += ["self.__post_init__()"] * hasattr(described, "__post_init__")
     exec(f"def __init__({', '.join(parameters)}): {'; '.join(lines) or 'pass'}", names)
     made = names["__init__"]
@@ -99,9 +99,18 @@ def _represented(self: Any) -> str:
     return f"{type(self).__qualname__}({', '.join(values)})"
 
 
-def _refuse_value(self: object, name: str, value: object) -> NoReturn:
-    raise FrozenInstanceError(f"cannot assign to field {name!r}")
+def _assign(self: Any, name: str, value: object) -> None:
+    if _is_frozen(self, name):
+        raise FrozenInstanceError(f"cannot assign to field {name!r}")
+    object.__setattr__(self, name, value)
 
 
-def _refuse_deletion(self: object, name: str) -> NoReturn:
-    raise FrozenInstanceError(f"cannot delete field {name!r}")
+def _delete(self: Any, name: str) -> None:
+    if _is_frozen(self, name):
+        raise FrozenInstanceError(f"cannot delete field {name!r}")
+    object.__delattr__(self, name)
+
+
+def _is_frozen(instance: Any, name: str) -> bool:
+    """Return True for a field, and for any attribute unless a derived class may add some."""
+    return name in instance.__dataclass_fields__ or "__dataclass_fields__" in vars(type(instance))

@@ -57,7 +57,12 @@ def _classes(decorator):
         def __repr__(self):
             return "own"
 
-    return {made.__name__: made for made in (Numbers, More, One, Nothing, ByIdentity, Own)}
+    class Derived(One):
+        def __init__(self, a):
+            super().__init__(a)
+            self.b = 2 * a
+
+    return {made.__name__: made for made in (Numbers, More, One, Nothing, ByIdentity, Own, Derived)}
 
 
 CLASSES = {name: _classes(decorator) for name, decorator in DECORATORS.items()}
@@ -68,6 +73,7 @@ PARAMETERS = {
     "Nothing": [{}],
     "ByIdentity": [{}, {"a": 1}],
     "Own": [{}, {"a": 1}],
+    "Derived": [{"a": 1.0}, {"a": 2.0}],
 }
 
 
@@ -88,12 +94,15 @@ def _answers(kind, given):
         yield "repr", [repr(each) for each in made]
     for each in made:
         yield "fields", [(f.name, f.type, f.init, f.compare) for f in dataclasses.fields(each)]
-        yield "state", vars(each)
+        yield "state", dict(vars(each))
         yield "dict", dataclasses.asdict(each)
         yield "copy", vars(copy.copy(each))
         yield "replaced", vars(dataclasses.replace(each))
         yield "assigned", _outcome(lambda each=each: setattr(each, "a", 5))
         yield "deleted", _outcome(lambda each=each: delattr(each, "a"))
+        yield "added", _outcome(lambda each=each: setattr(each, "new", 5))
+        yield "new", vars(each)
+        yield "taken away", _outcome(lambda each=each: delattr(each, "new"))
     yield "signature", str(inspect.signature(kind))
     yield "unknown", _outcome(lambda: kind(**given[0], other=1))[0]
     yield "match", kind.__match_args__
