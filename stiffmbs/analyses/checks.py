@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -15,6 +14,7 @@ from ..compile.system import System
 from ..compile.written_values import table_notes
 from ..dynamics.dynamics import OutputRows
 from ..elements.element import Force
+from ..frozen_dataclass import dataclass
 from ..model.scene import notes_of
 from ..notes import Note, NoteKind, Severity
 from ..redundancy.messages.presolve_report import StructureNotes

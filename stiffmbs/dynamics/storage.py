@@ -7,7 +7,6 @@ import math
 import mmap
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from ..compile.machine.native.statuses import (
     SINGULAR,
 )
 from ..errors import InputError
+from ..frozen_dataclass import dataclass
 from ..tuning import tuned
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from pydantic import Field, field_validator
 
+from ..frozen_dataclass import dataclass
 from ..reading import given
 from ..reading.fields import Described, is_name, other_letters
 from ..reading.files.quoted import written
@@ -17,7 +18,7 @@ from ..reading.formula.names import PLANE
 from ..reading.handle import Handle
 from ..reading.marker import Marker, Placement
 from ..reading.units import si
-from .shape import PlanarGeometry
+from .geometry import PlanarGeometry
 
 if TYPE_CHECKING:
     from .spatial.body import Body as SpatialBody

@@ -10,7 +10,6 @@ from __future__ import annotations
 import builtins
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
@@ -18,6 +17,7 @@ from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
 from ..errors import InputError
+from ..frozen_dataclass import dataclass
 from ..reading.fields import Described, typed
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import joint_channels
@@ -25,8 +25,8 @@ from ..reading.marker import MarkerReference
 
 if TYPE_CHECKING:
     from ..model.model_data import ModelData
-    from .forces.friction import Loads
     from .initial_pose import InitialPose
+    from .loads import Loads
 
 Part = TypeVar("Part")
 Symbolic = Any

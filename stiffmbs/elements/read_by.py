@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, Vali
 from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InputError, prefixed
+from ..frozen_dataclass import dataclass
 from ..reading.did_you_mean import did_you_mean
 from ..reading.files.files_read import file_beside
 from ..reading.files.quoted import written
@@ -38,6 +38,13 @@ class ReadBy:
 
     def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> JsonSchema:
         return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
+
+
+def of_class(kind: Callable[[], type[BaseModel]]) -> ReadBy:
+    """Return the marker of a field that takes entries of a class, which is imported where an entry is read."""
+    return ReadBy(
+        lambda found, context: kind().model_validate(found, context=context), lambda schema_of: schema_of(kind())
+    )
 
 
 def class_of(

@@ -6,11 +6,12 @@ side, or of the wheel about its axis.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
+from ..frozen_dataclass import dataclass
 from .matrices import Matrix, dense
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from ..frozen_dataclass import dataclass
 
 NUMBER = np.dtype("<f8")
 

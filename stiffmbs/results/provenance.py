@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..model.files.stages import WrittenScene
+from ..frozen_dataclass import dataclass
+from ..model.files.written_scene import WrittenScene
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings

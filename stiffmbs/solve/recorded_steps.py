@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..compile.equations import Equations
+from ..frozen_dataclass import dataclass
 
 if TYPE_CHECKING:
     from .trajectory import Recording

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,8 @@ import numpy as np
 from ..analyses.job import Job, prepare
 from ..analyses.renumber import renumbered
 from ..errors import InputError
-from ..model.files.stages import WrittenScene
+from ..frozen_dataclass import dataclass
+from ..model.files.written_scene import WrittenScene
 from ..model.settings import RunSettings
 from ..reading.did_you_mean import instead_of
 from ..reading.variation import Range, Variation, variation

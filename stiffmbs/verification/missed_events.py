@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..analyses.job import Job
 from ..analyses.rerun import velocities_again
 from ..compile.inputs.features import InputFeatures
 from ..errors import StiffmbsError
+from ..frozen_dataclass import dataclass
 from ..results.error_bars import Fine
 from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of

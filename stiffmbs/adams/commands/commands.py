@@ -6,8 +6,9 @@ A command that would change results and is not supported is refused, never ignor
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ...frozen_dataclass import dataclass
 from ...model.settings import DEFAULT_RTOL
 from ..statements.arguments import Arguments
 from ..statements.changes import Changes, Key, alters, key_of

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ..statements.arguments import Arguments
 from ..statements.text import DatasetFault

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...frozen_dataclass import dataclass
 from ...reading.marker import GROUND
 from .arguments import Arguments
 from .declared import Numbered, constant, given, ident_or_none, number, read_by

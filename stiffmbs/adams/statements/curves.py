@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Self
 
+from ...frozen_dataclass import dataclass
 from .arguments import Arguments
 from .declared import Numbered, ident, read_by
 from .outputs import FEWEST_POINTS

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...frozen_dataclass import dataclass
 from ..functions.function import Function, read_function
 from .arguments import Arguments
 from .declared import Numbered, expression, read_by

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...frozen_dataclass import dataclass
 from ..functions.function import Function
 from .arguments import Arguments
 from .declared import Numbered, expression, given, ident, ident_or_none, read_by

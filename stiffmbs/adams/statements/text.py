@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...errors import InputError
+from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import MOST_LISTED
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import lines

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from ...compile.bodies import BODY_KINDS
 from ...elements.element import Force
 from ...elements.states.amount import Amount
 from ...errors import InputError
+from ...frozen_dataclass import dataclass
 from ...model.model_builder import ModelBuilder
 from ...model.model_data import ModelData
 from ...reading.did_you_mean import did_you_mean

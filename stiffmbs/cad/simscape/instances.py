@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ...frozen_dataclass import dataclass
 from ...reading.files.xml_nodes import Node
 from ..assembly import WORLD, CadFault, Frame, finite, rotation
 

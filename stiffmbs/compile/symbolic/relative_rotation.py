@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
+
+from ...frozen_dataclass import dataclass
 
 
 class RotationVector(sp.Function):  # type: ignore[misc]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
 from ...elements.element import Force, Joint
 from ...errors import InputError
+from ...frozen_dataclass import dataclass
 from ..kind import Kind
 from .symbols import Symbols, symbols_of
 

@@ -6,8 +6,7 @@ angles, components of joints and forces, and every channel.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...frozen_dataclass import dataclass
 from ...reading.formula.names import PLANE, SPACE, FormulaNames
 
 OF_RUN = {"energy": ("kinetic", "potential", "total"), "constraint": ("position", "velocity")}

@@ -6,8 +6,7 @@ to the spin axis and to the wheel's heading (Pacejka, Tire and Vehicle Dynamics,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...frozen_dataclass import dataclass
 from ..element import Expr, Matrix, Symbolic, sp
 from ..roads.envelope import enveloped
 from ..roads.road import above_zero, magnitude

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
+from ...frozen_dataclass import dataclass
 from ...reading.fields import Measured
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp
-from ..forces.friction import AT_REST, length
+from ..forces.friction import AT_REST
+from ..loads import length
 from .marker import Marker
 from .wrench import Pairs, velocity
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -22,6 +21,7 @@ from ...elements.spatial.orientation import (
     product,
     rotated,
 )
+from ...frozen_dataclass import dataclass
 from .frame import Frame, Use
 
 

@@ -6,11 +6,12 @@ import re
 import sys
 import unicodedata
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import field
 from io import StringIO
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ...errors import InputError, prefixed
+from ...frozen_dataclass import dataclass
 from .quoted import first_line, quoted
 
 if TYPE_CHECKING:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from ...frozen_dataclass import dataclass
 from ..marker import MarkerReference
 from ..table import Table
 from ..units.units import Quantity

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
+from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import listed, quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from ...frozen_dataclass import dataclass
 from ...reading.marker import GROUND
 from . import solids
 from .scene_graph import Anchor, Line, Link, Part, Role, Solid

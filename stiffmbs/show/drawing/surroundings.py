@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ...elements.roads.crg import CrgRoad
 from ...elements.roads.road import Road
+from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND
 from .poses import Poses

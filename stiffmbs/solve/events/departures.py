@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ...compile.system import System
 from ...compile.written_values import table_arguments
+from ...frozen_dataclass import dataclass
 from ...notes import Note
 from ...reading.table import Table
 from ..reasons import Reason

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...compile.state import LEFT_OPEN
@@ -11,6 +9,7 @@ from ...dynamics.algebraic_states import failure
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
+from ...frozen_dataclass import dataclass
 from ...tuning import tuned
 from ..suspect import most_violated
 
