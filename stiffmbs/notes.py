@@ -7,11 +7,9 @@ the documentation (`docs/reference/notes.md`) lists every kind of the package.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
-
-from .frozen_dataclass import dataclass
 
 
 class Severity(Enum):

@@ -18,7 +18,7 @@ ORDER = (
     "results", "run_checks", "error_estimate", "analyses", "verification", "studies", "show", "comparison", "real_time", "live", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
-ANYWHERE = {"errors", "frozen_dataclass", "interrupts", "methods", "notes", "processes", "solver_names", "tuning"}
+ANYWHERE = {"errors", "interrupts", "methods", "notes", "processes", "solver_names", "tuning"}
 MOST_FILES = 25
 MODULES = {(ROOT.name, *path.relative_to(ROOT).with_suffix("").parts): path for path in sorted(ROOT.glob("**/*.py"))}
 

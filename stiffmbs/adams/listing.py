@@ -5,12 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.files.text_file import file_text, source_name
 from .commands.command_files import Read, command_file_of
 from .commands.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 from ..compile.active_dampers import active_damper_notes
@@ -13,7 +13,6 @@ from ..compile.written_values import table_notes
 from ..dynamics.initial import InitialValues
 from ..dynamics.moves import Move
 from ..errors import AssemblyError, SolverError
-from ..frozen_dataclass import dataclass
 from ..methods import NotebookMethods
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, takes_settings

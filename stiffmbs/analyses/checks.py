@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -14,7 +15,6 @@ from ..compile.system import System
 from ..compile.written_values import table_notes
 from ..dynamics.dynamics import OutputRows
 from ..elements.element import Force
-from ..frozen_dataclass import dataclass
 from ..model.scene import notes_of
 from ..notes import Note, NoteKind, Severity
 from ..redundancy.messages.presolve_report import StructureNotes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy as np
 from ..compile.callbacks import fault_of
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..model.files.stages import Until
 from ..results.channels import channels_of
 from ..solve.missing_rows import joined_rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -15,7 +15,6 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..elements.requests.order import units
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium
 from ..errors import AssemblyError, SolverError, prefixed
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings

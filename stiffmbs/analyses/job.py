@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from operator import attrgetter
 from pathlib import Path
@@ -22,7 +22,6 @@ from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.turns import counted_angles, take_nearest_turns
 from ..elements.turns import GROUND_AXES
 from ..errors import AssemblyError, InputError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
 from ..model.scene import Scene

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import dataclass
 
-from ..frozen_dataclass import dataclass
 from ..solve.trajectory import ProgressCallback
 
 

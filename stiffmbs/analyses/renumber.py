@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from ..compile.system import System
 from ..elements.element import Element
 from ..elements.states.entry import StateValue
 from ..errors import InputError, prefixed
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..reading.did_you_mean import instead_of

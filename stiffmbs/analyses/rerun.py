@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,6 @@ import numpy as np
 
 from ..dynamics.dynamics import OutputRows
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..notes import Note, NoteKind, Severity
 from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_whole_steps, together, unchecked_from
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts

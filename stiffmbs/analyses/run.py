@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Unpack
 
@@ -16,7 +16,6 @@ from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..elements.requests.order import units
 from ..errors import AssemblyError
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings

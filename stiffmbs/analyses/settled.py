@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from ..equilibria.equilibrium import Equilibrium, find_equilibrium
 from ..equilibria.force_balance import balance_at, forces_by_velocity
 from ..equilibria.steady_motion import at_rest
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix

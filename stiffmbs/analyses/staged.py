@@ -8,14 +8,13 @@ Then the run is solved up to it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import InputError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.files.stages import OWN_SETTINGS, Stage, Until
 from ..model.scene import Scene
 from ..model.settings import RunSettings

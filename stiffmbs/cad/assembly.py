@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..elements.spatial.massless import BEYOND
 from ..elements.spatial.orientation import ROUGH, UNIT, from_matrix
-from ..frozen_dataclass import dataclass
 from ..reading.files.xml_nodes import FileFault
 from ..reading.files.yaml_text import Content
 from ..robots.pose import Placed

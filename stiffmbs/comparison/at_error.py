@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
-
-from ..frozen_dataclass import dataclass
 
 CLOCK = time.get_clock_info("process_time").resolution
 """Least time of a solution, s, as clocks may show zero."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Unpack
 
 from ..analyses.job import Runnable, data_of
 from ..compile.machine.routines import fully_compiled
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings, Settings, takes_settings
 from .at_error import AtError, Row, decades, times_at
 from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, USUAL, Entry, Plan, Values, base_settings, plan_of

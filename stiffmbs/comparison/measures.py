@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.bodies import QUATERNION
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.did_you_mean import instead_of
 from ..results.scales import kind_of
 from ..results.solution import Solution

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from numbers import Real
 
 import numpy as np
 
 from ..analyses.job import settings_of
 from ..errors import InputError, refuse_text
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..reading.did_you_mean import did_you_mean

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..analyses.job import prepare
 from ..analyses.run import solved
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..reading.files.quoted import listed

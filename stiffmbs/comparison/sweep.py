@@ -5,13 +5,13 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
 from ..analyses.job import Job, prepare, up_to_a_fault
 from ..errors import InputError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..results.channels import channels_of

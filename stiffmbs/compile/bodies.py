@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from .quaternions import CONJUGATE, rotation_vector, times, times_vector
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from .system import System
 
 FIXED: Final = -1

@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..frozen_dataclass import dataclass
 from ..reading.formula.formula import Formula
 from ..reading.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..reading.formula.text import UNIT

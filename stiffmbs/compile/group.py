@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..elements.element import Element
-from ..frozen_dataclass import dataclass
 from .bodies import BodyKind
 from .kind import Kind
 from .record import KindRecord

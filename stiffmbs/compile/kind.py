@@ -7,7 +7,7 @@ joints). A parameter change therefore never changes a kernel.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -17,7 +17,6 @@ from ..elements.element import Component, Element, Force, Joint
 from ..elements.states.entry import StateValue
 from ..elements.states.state_name import StateName, own_state
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference, PlacedMarkers

@@ -12,7 +12,7 @@ import re
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +22,6 @@ from ..cache.installed import installed_version
 from ..cache.source_files import digest_of, python_files
 from ..elements.element import CompiledTerms, Component, Element
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place

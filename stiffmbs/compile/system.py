@@ -7,13 +7,12 @@ equation and coordinate of each.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..reading.formula.formula import Formula
 from .bodies import BodyKind
 from .group import Group

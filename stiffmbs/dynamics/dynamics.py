@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, TypeVar, cast
 
@@ -16,7 +17,6 @@ from ..compile.machine.object_code import SHORT
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
-from ..frozen_dataclass import dataclass
 from .native.layouts import DYNAMICS, JUDGED, LINES
 from .native.parameters import CONSISTENCY, ELIMINATION
 from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from ..compile.gaps import position_gap
 from ..compile.machine.native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 from ..compile.written_values import values_of
 from ..errors import AssemblyError
-from ..frozen_dataclass import dataclass
 from ..notes import NoteKind, Severity
 from .algebraic_states import failure
 from .dynamics import Dynamics

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..compile.machine.layout import address, packed
@@ -9,7 +11,6 @@ from ..compile.machine.object_code import SHORT
 from ..compile.machine.routines import together
 from ..compile.quaternions import rotated
 from ..compile.state import State
-from ..frozen_dataclass import dataclass
 from .native.layouts import BODY, FRAME, JOINT_TREE
 
 _SIGNATURE = "void(float64, float64*, float64*, int64*)"

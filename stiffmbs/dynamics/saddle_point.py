@@ -5,6 +5,7 @@ All three are [D J^T; J 0] [x; w] = [a; b], solved by a sparse LU with a constan
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import repeat
 from typing import Any
@@ -16,7 +17,6 @@ from ..compile.formulation import Block, Formulation, Product
 from ..compile.machine.layout import packed_with_memory
 from ..compile.machine.native.tables import FACTORS
 from ..compile.state import State
-from ..frozen_dataclass import dataclass
 from ..sparse.elimination_order import EliminationOrder, elimination_order, factors_of
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))

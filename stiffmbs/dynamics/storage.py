@@ -7,6 +7,7 @@ import math
 import mmap
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,7 +21,6 @@ from ..compile.machine.native.statuses import (
     SINGULAR,
 )
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..tuning import tuned
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,6 @@ from ..compile.system import System
 from ..elements.element import Element, Joint
 from ..elements.requests.output import CONTINUOUS_ANGLES
 from ..elements.turns import INITIAL_COUNT, TURN
-from ..frozen_dataclass import dataclass
 from ..reading.formula.formula import Formula
 from .dynamics import Dynamics
 

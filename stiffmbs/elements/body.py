@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from pydantic import Field, field_validator
 
-from ..frozen_dataclass import dataclass
 from ..reading import given
 from ..reading.fields import Described, is_name, other_letters
 from ..reading.files.quoted import written

@@ -10,6 +10,7 @@ from __future__ import annotations
 import builtins
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
@@ -17,7 +18,6 @@ from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.fields import Described, typed
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import joint_channels

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference
 from .element import Element, Joint

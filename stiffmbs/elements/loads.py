@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..frozen_dataclass import dataclass
+from dataclasses import dataclass
+
 from .element import Expr, Symbolic, sp
 
 TINY = 1e-24

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,6 @@ from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, Vali
 from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InputError, prefixed
-from ..frozen_dataclass import dataclass
 from ..reading.did_you_mean import did_you_mean
 from ..reading.files.files_read import file_beside
 from ..reading.files.quoted import written

@@ -13,14 +13,13 @@ step of length 1/sqrt(s). The equations of algebraic states are those at rest.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..reading.units.quantity import LARGEST
 from .force_balance import Balance, balance_at, displacement, moved, strayed
 from .matrices import diagonal, joined, solution, zeros

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from .found_speeds import FoundSpeeds, found_speeds
 from .matrices import Matrix, joined, mass_matrix, matrix_of, product, scaled, solution, term_matrix, zeros
 from .parameters import EQUILIBRIA

@@ -6,12 +6,11 @@ side, or of the wheel about its axis.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
-from ..frozen_dataclass import dataclass
 from .matrices import Matrix, dense
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion

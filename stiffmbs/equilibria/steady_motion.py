@@ -9,14 +9,13 @@ and a spinning body has the angular velocity W + s e, with the rate (W + s e)' =
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
-from ..frozen_dataclass import dataclass
 from .matrices import Matrix, block_diagonal, dense, matrix_of, zeros
 from .parameters import EQUILIBRIA
 

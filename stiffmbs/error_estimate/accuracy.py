@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..model.accuracy import Wanted, wanted
 from ..model.settings import LARGEST_RTOL
 from ..results.digits import KnownErrors, over_time

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.native.parameters import CONSISTENCY
-from ..frozen_dataclass import dataclass
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import closed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
 
@@ -12,7 +12,6 @@ import numpy as np
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..results.channels import channels_of
 from ..results.error_bars import ChannelErrors, differences

@@ -9,14 +9,13 @@ they are solutions of the nonlinear equations d_i = sum_j D_ij x_j / h - (F(z_i)
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.native.parameters import CONSISTENCY
-from ..frozen_dataclass import dataclass
 from ..solve.radau.collocation import radau
 from .coordinates import as_rows, displaced, typical
 from .evaluated import Evaluated, evaluated, motion

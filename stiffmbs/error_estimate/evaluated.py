@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..solve.stiff_rows import with_stiff_forces
 from .coordinates import as_rows, pose_rates
 

@@ -8,11 +8,11 @@ larger errors still: a polynomial through states on both sides of a kink leaves 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legval, legvander
 
-from ..frozen_dataclass import dataclass
 from ..solve.radau.collocation import Collocation, radau
 from .parameters import ESTIMATE
 

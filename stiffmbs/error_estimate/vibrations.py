@@ -8,13 +8,13 @@ c_i V_i / lambda_i from the motion that the steps follow. In a start that moves,
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..solve.error_control.newton import stiffness_at
 from .coordinates import pose_rates
 from .evaluated import Evaluated

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.linalg.blas import dsyrk, dtrsm
 from scipy.linalg.lapack import dpotrf
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.csgraph import breadth_first_order, maximum_bipartite_matching
-
-from ..frozen_dataclass import dataclass
 
 LARGEST_PART = 64
 """Largest number of nodes that are eliminated without a further division."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputError, needs, prefixed
-from ..frozen_dataclass import dataclass
 from ..reading.files.quoted import first_line
 from .mesh_files import data_lines
 

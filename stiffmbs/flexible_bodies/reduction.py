@@ -9,14 +9,13 @@ Multibody System Dynamics 51, 2021).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from scipy.linalg import block_diag, eigh, inv, null_space
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from .finite_elements import PRECISION, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order

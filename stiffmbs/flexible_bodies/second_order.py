@@ -17,12 +17,12 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from scipy.linalg import eigh
 
-from ..frozen_dataclass import dataclass
 from .finite_elements import FiniteElements
 from .interfaces import Interface
 from .solid import InitialStress

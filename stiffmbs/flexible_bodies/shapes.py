@@ -7,6 +7,7 @@ A shape function is the polynomial that is 1 at one node and 0 at the others. He
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 
@@ -14,7 +15,6 @@ import numpy as np
 from scipy.special import roots_jacobi
 
 from ..errors import needs
-from ..frozen_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

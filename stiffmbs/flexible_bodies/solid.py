@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from scipy.sparse import bsr_array, csr_array, eye_array, kron
 
-from ..frozen_dataclass import dataclass
 from .materials import ElementMaterials
 from .shapes import ELEMENTS
 

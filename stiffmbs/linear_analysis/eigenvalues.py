@@ -6,10 +6,11 @@ deflates them: with V = (V_1, V_2) and A V_1 = 0 all other eigenvalues are those
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.linalg import eig, svd
 
-from ..frozen_dataclass import dataclass
 from .parameters import LINEAR_ANALYSIS
 
 ZERO_SINGULAR = 10 * np.finfo(float).eps

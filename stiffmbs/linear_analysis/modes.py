@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..frozen_dataclass import dataclass
 from .eigenvalues import Zeros, eigen
 from .parameters import LINEAR_ANALYSIS
 from .state_space import StateMatrix

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
@@ -9,7 +11,6 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
 from ..dynamics.dynamics import Dynamics
 from ..equilibria.matrices import Matrix, dense
 from ..equilibria.steady_motion import SteadyMotion
-from ..frozen_dataclass import dataclass
 from ..sparse.parameters import MATRICES
 from .parameters import LINEAR_ANALYSIS
 from .state_space import null_space, state_matrix

@@ -6,10 +6,11 @@ eliminates the multipliers (null space method; Negrut and Ortiz, J. Comput. Nonl
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from .parameters import LINEAR_ANALYSIS
 from .tangent_space import Linearised
 

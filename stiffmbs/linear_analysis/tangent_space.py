@@ -7,7 +7,7 @@ v. In these axes the equations of a symmetric rotor have constant coefficients a
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
@@ -16,7 +16,6 @@ from ..compile.quaternions import rotated
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from .parameters import LINEAR_ANALYSIS
 
 

@@ -6,13 +6,13 @@ With L^T M X = 0 and b the variation of v - X p' - N B_1 p, the equations contai
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import matrix_balance, schur
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from .eigenvalues import is_singular
 from .parameters import LINEAR_ANALYSIS
 from .state_space import StateMatrix

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from zlib import Z_BEST_SPEED
 
@@ -13,7 +14,6 @@ import numpy as np
 from ..analyses.run import run, solved
 from ..elements.element import Element
 from ..errors import InputError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.parts.options import CHOOSE, OPTIONS, choices_of, words_chosen
 from ..model.read_scene import read_scene

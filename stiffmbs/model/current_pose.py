@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..elements.element import Element
 from ..elements.turns import WithinHalfATurn
-from ..frozen_dataclass import dataclass
 
 if TYPE_CHECKING:
     from .model_data import ModelData

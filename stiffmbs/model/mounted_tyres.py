@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..elements.spatial.body import Body
 from ..elements.spatial.orientation import matrix, rotated
 from ..elements.spatial.tyre import Tyre
-from ..frozen_dataclass import dataclass
 
 ALONG = 0.1
 """Limit for two wheels on one axle: offset of one from the axis of the other, relative to the distance along it. The cosine

@@ -8,7 +8,7 @@ equations of the whole model.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,7 +17,6 @@ import numpy as np
 from ..compile.compile_model import compile_model
 from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.system import System
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..reading.marker import Placement
 from .merged_bodies import merge

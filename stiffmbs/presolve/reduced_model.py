@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -11,7 +11,6 @@ from typing import Any
 from ..elements.element import Element, Joint
 from ..elements.states.entry import StateValue
 from ..elements.states.state_name import StateName
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
 from ..reading.marker import MarkerReference

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache
 from typing import NamedTuple
 
@@ -16,7 +16,6 @@ from ..compile.record import record_of
 from ..compile.state import State
 from ..compile.system import System, Term
 from ..compile.terms import TERM_SETS
-from ..frozen_dataclass import dataclass
 from ..tuning import tuned
 
 

@@ -12,6 +12,7 @@ import sys
 import unicodedata
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -28,7 +29,6 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from .did_you_mean import did_you_mean, instead_of
 from .files.quoted import MOST_QUOTED, first_line, quoted, written
 from .files.yaml_text import quotes_hint

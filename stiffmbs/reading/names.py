@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
-
-from ..frozen_dataclass import dataclass
 
 if TYPE_CHECKING:
     from pydantic import ValidationInfo

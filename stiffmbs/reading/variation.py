@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import InputError, prefixed
-from ..frozen_dataclass import dataclass
 from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .units.quantity import quantity

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..analyses.run import run
 from ..comparison.measures import ROTATION, compared, difference
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..results.scales import UNITS, kind_of

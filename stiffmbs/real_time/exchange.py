@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-
-from ..frozen_dataclass import dataclass
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ import time
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ..errors import AssemblyError, InputError, SolverError
-from ..frozen_dataclass import dataclass
 from ..interrupts import uncollected
 from ..solve.stiff_rows import States
 from ..solve.trajectory import Ending

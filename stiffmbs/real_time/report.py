@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..notes import note_lines
 from ..results.solution import Solution
 from ..solve.trajectory import Outcome

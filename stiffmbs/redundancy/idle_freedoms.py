@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from random import Random
 
 import numpy as np
@@ -13,7 +14,6 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import Dynamics
-from ..frozen_dataclass import dataclass
 from .parameters import REDUNDANCY
 from .uniqueness import by_functions
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.placed_markers import marker_axes
-from ..frozen_dataclass import dataclass
 from .loop_equations import LoopEquations, Pose
 from .loops import LoopJoint
 from .parameters import REDUNDANCY

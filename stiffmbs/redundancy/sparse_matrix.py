@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..sparse.parameters import MATRICES
 
 if TYPE_CHECKING:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import astuple, field
+from dataclasses import astuple, dataclass, field
 
-from ..frozen_dataclass import dataclass
 from .error_bars import ErrorBar
 from .solution import Solution
 

@@ -11,12 +11,13 @@ run is repeated with rows at the nodes of a Gauss-Lobatto quadrature within each
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import OutputRows
-from ..frozen_dataclass import dataclass
 
 MOST_INSTANTS = 100_000
 """Number of instants of a balance at most; of more, only every second (or third, ...) is used."""

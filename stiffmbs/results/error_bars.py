@@ -14,13 +14,12 @@ proportional to the product.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from ..dynamics.storage import release
-from ..frozen_dataclass import dataclass
 from .scales import ROUNDING, kind_of
 
 Fine = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +17,6 @@ from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody, static_solver
 from ..flexible_bodies.second_order import displacement_of_second_order
 from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
-from ..frozen_dataclass import dataclass
 from ..reading.did_you_mean import did_you_mean
 
 if TYPE_CHECKING:

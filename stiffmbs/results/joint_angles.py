@@ -7,6 +7,7 @@ the angle, and otherwise follow from its rate and acceleration at the output tim
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,7 +17,6 @@ from ..dynamics.dynamics import OutputRows
 from ..dynamics.turns import counted_angles
 from ..elements.element import Joint
 from ..elements.turns import INITIAL_COUNT, TURN
-from ..frozen_dataclass import dataclass
 from ..notes import Note, NoteKind
 from ..reading.joint_name import ORDERS
 

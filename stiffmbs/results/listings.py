@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import TypeAlias
@@ -13,7 +13,6 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.did_you_mean import did_you_mean
 from ..reading.files.files_read import content_of
 from ..reading.files.quoted import quoted

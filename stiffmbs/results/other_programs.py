@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.ascii import in_ascii
 from ..reading.files.quoted import quoted
 

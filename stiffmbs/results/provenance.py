@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..model.files.written_scene import WrittenScene
 from ..model.model_data import ModelData
 from ..model.scene import Scene

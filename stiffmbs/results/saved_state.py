@@ -9,7 +9,7 @@ import warnings
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
@@ -17,7 +17,6 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.files.files_read import check_regular, content_of
 from ..reading.files.quoted import quoted
 from ..reading.joint_name import FREE_COORDINATES

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from ..dynamics.storage import release
 from ..errors import InputError, refuse_missing
-from ..frozen_dataclass import dataclass
 from ..methods import SolutionMethods
 from ..model.scene import Figure
 from ..notes import Note

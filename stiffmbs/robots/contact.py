@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from math import sqrt
 from typing import Final
 
 from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY
-from ..frozen_dataclass import dataclass
 
 PLANE, SPHERE, CAPSULE, BOX, CYLINDER, ELLIPSOID = "plane", "sphere", "capsule", "box", "cylinder", "ellipsoid"
 PARTNERS: Mapping[str, tuple[str, ...]] = {

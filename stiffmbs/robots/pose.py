@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..elements.spatial.orientation import IDENTITY, product, rotated
-from ..frozen_dataclass import dataclass
 from .robot import Link, LinkJoint, Robot
 
 

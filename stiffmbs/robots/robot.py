@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 import numpy as np
 
 from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY
-from ..frozen_dataclass import dataclass
 from ..reading.files.xml_nodes import FileFault
 from .contact import Contact
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from math import isfinite, nan
 
-from ..frozen_dataclass import dataclass
 from ..reading.files.quoted import quoted
 from ..reading.files.xml_nodes import Node
 from .contact import BOX, CAPSULE, CYLINDER, PLANE, SPHERE, USUAL, Contact, Given, PerMass, Shape, split

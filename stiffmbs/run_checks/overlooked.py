@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from ..compile.reactions import reactions
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import blocks, release
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind
 from ..solve.error_control.tolerances import absolute_tolerances

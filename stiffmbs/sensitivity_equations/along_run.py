@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from ..compile.equations import ABSENT
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..solve.error_control.tolerances import independent_tolerances
 from .block_system import BlockSystem, Change
 from .collocation import CollocationVariations

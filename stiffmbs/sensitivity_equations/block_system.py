@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array
@@ -15,7 +16,6 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.storage import FAILURES
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ function g. The projection is that onto the constraints.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,7 +21,6 @@ from ..compile.equations import Equations
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from .block_system import BlockSystem, acceleration_at, saddle_solution
 from .recorded import SENSITIVITIES, Segment
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -15,7 +15,6 @@ from ..compile.state import State
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import ChatteringError, SolverError
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings
 from ..solve.engine import Reached
 from ..solve.events.native.parameters import INDISTINCT

@@ -6,12 +6,12 @@ The colours are those of the page (`report.css`): a chart has no background of i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import Final
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from .escaped import escaped
 
 CHART: Final = (460, 250)

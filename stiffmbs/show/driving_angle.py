@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..elements.joints.drive import Drive
 from ..elements.turns import TURN
-from ..frozen_dataclass import dataclass
 from ..model.model_data import ModelData
 from ..reading.marker import GROUND
 from ..results.solution import Solution

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
-from ..frozen_dataclass import dataclass
 from ..notes import Note, Severity
 from ..results.digits import KnownErrors, over_time
 from ..results.solution import Solution

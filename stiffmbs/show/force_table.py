@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..compile.bodies import PLANE, SPACE
-from ..frozen_dataclass import dataclass
 from ..reading.names import owner_of
 from ..results.error_bars import ErrorBar
 from ..results.solution import Solution, channel_ranges

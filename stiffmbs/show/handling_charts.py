@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..model.paths.lanes import STANDARDS, path_through
 from ..reading.units.display import DisplayUnits
 from ..studies.handling.known import SEEN, Run

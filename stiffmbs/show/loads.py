@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..reading.units.display import SI_UNITS, DisplayUnits
 from ..results.digits import largest_bar
 from ..results.error_bars import UNKNOWN

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..model.scene import Scene
 from ..results.solution import Solution
 from ..results.verification_words import has_reruns

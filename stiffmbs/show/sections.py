@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..results.displayed import displayed
 from ..results.listings import Difference, differences
 from ..results.scales import ROUNDING

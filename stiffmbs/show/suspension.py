@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
 from ..studies.suspension.road_loads import COMPONENTS, RoadLoads
 from .sections import Section, Table

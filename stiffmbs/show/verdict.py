@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ..frozen_dataclass import dataclass
 from ..notes import Note
 from ..results.digits import KnownErrors, digits_words, largest_bar
 from ..results.solution import Solution

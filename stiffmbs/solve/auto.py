@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -21,7 +21,6 @@ from ..compile.callbacks import has_fault
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings
 from ..tuning import tuned
 from .cost import COSTS, Counted, ImplicitCost, of_explicit_step, of_kernels

@@ -6,11 +6,10 @@ read, so that the choice is reproducible.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ..dynamics.dynamics import Dynamics
-from ..frozen_dataclass import dataclass
 from ..tuning import tuned
 from .explicit.dop853 import DOP853
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,6 @@ from ..dynamics.algebraic_states import failure, rates_by_states
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..tuning import tuned
 from .events.chattering import CHATTERING
 from .explicit.native.parameters import CONTROL

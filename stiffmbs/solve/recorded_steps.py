@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..compile.equations import Equations
-from ..frozen_dataclass import dataclass
 
 if TYPE_CHECKING:
     from .trajectory import Recording

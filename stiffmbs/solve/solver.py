@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings
 from .sampling import solved_between_samples
 from .trajectory import Solver, Trajectory

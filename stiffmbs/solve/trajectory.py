@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -24,7 +24,6 @@ from ..compile.inputs.enclosure import ROUNDING
 from ..compile.inputs.features import InputFeatures
 from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import ChatteringError, SolverError
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings
 from ..notes import Note
 from .events.native.parameters import INDISTINCT

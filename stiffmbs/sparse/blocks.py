@@ -7,13 +7,13 @@ quads, padded with zeros."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 
 import numpy as np
 
 from ..compile.machine.layout import QUAD
-from ..frozen_dataclass import dataclass
 
 
 def padded(size: int) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from ..analyses.job import Job, Runnable, prepare
 from ..analyses.renumber import renumbered
 from ..analyses.run import Finished, finished, solved
 from ..errors import InputError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.files.other_forces import OtherForces
 from ..model.files.written_scene import WrittenScene
 from ..model.read_scene import read_changed

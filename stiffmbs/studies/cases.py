@@ -6,11 +6,11 @@ import itertools
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.variation import MOST_VALUES, Variation
 
 MOST_CASES = MOST_VALUES

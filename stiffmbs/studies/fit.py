@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
@@ -12,7 +12,6 @@ import numpy as np
 from ..analyses.job import Runnable
 from ..analyses.run import solved
 from ..errors import InputError, SolverError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.files.written_scene import WrittenScene
 from ..reading.files.quoted import written as as_written
 from ..results.solution import Solution

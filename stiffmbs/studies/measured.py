@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..reading.files.quoted import quoted
 from ..results.saved_state import READERS, reading
 from ..results.solution import Solution

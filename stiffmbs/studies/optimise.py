@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..analyses.job import Runnable
 from ..errors import InputError, SolverError, StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.files.written_scene import WrittenScene
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene

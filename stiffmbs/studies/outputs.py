@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any, Protocol
 
 import numpy as np
 
 from ..errors import ChannelError, InputError
-from ..frozen_dataclass import dataclass
 from ..reading.did_you_mean import did_you_mean
 from ..reading.names import owner_of
 

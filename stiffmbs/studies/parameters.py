@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy as np
 from ..analyses.job import Job, prepare
 from ..analyses.renumber import renumbered
 from ..errors import InputError
-from ..frozen_dataclass import dataclass
 from ..model.files.written_scene import WrittenScene
 from ..model.settings import RunSettings
 from ..reading.did_you_mean import instead_of

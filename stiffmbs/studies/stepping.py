@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
@@ -16,7 +17,6 @@ from ..dynamics.held_inputs import HeldInputs
 from ..dynamics.initial import InitialValues
 from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
-from ..frozen_dataclass import dataclass
 from ..results.joint_coordinates import JointCoordinates
 from ..solve import SOLVERS
 from ..solve.bdf import bdf_integrator

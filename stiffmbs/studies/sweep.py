@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +16,6 @@ import numpy as np
 
 from ..analyses.job import Runnable
 from ..errors import InputError, StiffmbsError, refuse_text
-from ..frozen_dataclass import dataclass
 from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..reading.files.quoted import quoted

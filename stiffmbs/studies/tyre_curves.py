@@ -5,12 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from pydantic import Field
 
 from ..elements.tyres.coefficients import TyreProperties
-from ..frozen_dataclass import dataclass
 from ..reading.fields import Described
 from ..reading.units import si
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +13,6 @@ import numpy as np
 from ..analyses.job import Job
 from ..compile.bodies import SPACE
 from ..compile.quaternions import CONJUGATE, rotation_vector, times
-from ..frozen_dataclass import dataclass
 from ..notes import Note, NoteKind
 from ..results.error_bars import ErrorBar
 from ..results.scales import kind_of

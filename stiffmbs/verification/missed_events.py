@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from ..analyses.job import Job
 from ..analyses.rerun import velocities_again
 from ..compile.inputs.features import InputFeatures
 from ..errors import StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..results.error_bars import Fine
 from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of

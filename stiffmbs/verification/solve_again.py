@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from ..analyses.job import Job
 from ..analyses.run import solved
 from ..errors import StiffmbsError
-from ..frozen_dataclass import dataclass
 from ..model.settings import RunSettings
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of

@@ -6,9 +6,8 @@ A command that would change results and is not supported is refused, never ignor
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from ...frozen_dataclass import dataclass
 from ...model.settings import DEFAULT_RTOL
 from ..statements.arguments import Arguments
 from ..statements.changes import Changes, Key, alters, key_of

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...frozen_dataclass import dataclass
 from ..statements.arguments import Arguments
 from ..statements.text import DatasetFault, Statement
 from ..statements.units import Units

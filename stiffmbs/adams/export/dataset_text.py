@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from ...elements.states.entry import StateValue
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.scene import Scene
 from ...model.settings import DEFAULT_POINTS
 from ...model.spatial_model import SpatialData

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ..scene.mechanism import Mechanism, Place
 from ..statements.constraints import TRANSLATIONAL, Primitive

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ..statements.arguments import Arguments
 from ..statements.text import DatasetFault

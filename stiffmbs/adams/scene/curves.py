@@ -6,12 +6,12 @@ At a curve-to-curve contact a light auxiliary body has its point on both curves 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...elements.spatial.massless import MASSLESS, massless_moment
 from ...elements.spatial.number_format import plain, quaternion, vector
-from ...frozen_dataclass import dataclass
 from ..statements.curves import CurveOnCurve, FirstContact, PointOnCurve
 from ..statements.declared import Numbered
 from ..statements.geometry import Frame

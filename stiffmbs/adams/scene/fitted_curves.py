@@ -6,10 +6,11 @@ two curves differ between the points.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...elements.spatial.number_format import plain, quaternion, vector
-from ...frozen_dataclass import dataclass
 from ...reading.files.yaml_text import Content
 from ..statements.declared import Numbered
 from ..statements.geometry import IDENTITY, PRECISION, Frame

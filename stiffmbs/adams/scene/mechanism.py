@@ -7,14 +7,13 @@ initial angular velocities refer. The part's own axes do not occur in the scene.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ...elements.spatial.massless import MASSLESS
 from ...elements.spatial.number_format import plain
-from ...frozen_dataclass import dataclass
 from ...reading.files.yaml_text import Content
 from ...reading.marker import GROUND
 from ..functions.function import Function

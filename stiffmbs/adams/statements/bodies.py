@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ...frozen_dataclass import dataclass
+from dataclasses import dataclass
+
 from ...reading.marker import GROUND
 from .arguments import Arguments
 from .declared import Numbered, constant, given, ident_or_none, number, read_by

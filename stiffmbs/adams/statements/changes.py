@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from ...frozen_dataclass import dataclass
 from .arguments import Arguments
 from .keywords import READERS, keyword
 from .text import CommandFault, Statement

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from ...frozen_dataclass import dataclass
 from .arguments import Arguments
 from .declared import Numbered, above_zero, number, read_by
 from .geometry import ROUNDING

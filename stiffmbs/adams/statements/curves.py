@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Self
 
-from ...frozen_dataclass import dataclass
 from .arguments import Arguments
 from .declared import Numbered, ident, read_by
 from .outputs import FEWEST_POINTS

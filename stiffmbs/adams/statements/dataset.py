@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import MOST_LISTED, listed
 from ...reading.files.requested import unused_notes
 from .bodies import Marker, Part

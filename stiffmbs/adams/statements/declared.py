@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field, fields
+from dataclasses import dataclass, field, fields
 from typing import ClassVar, Self, TypeVar
 
-from ...frozen_dataclass import dataclass
 from ..functions.function import Function, read_function, required_function
 from .arguments import Arguments
 from .text import DatasetFault, Statement

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ..functions.function import read_function
 from .arguments import Arguments
 from .constraints import ROTATIONAL, TRANSLATIONAL

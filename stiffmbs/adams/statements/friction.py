@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeVar
 
-from ...frozen_dataclass import dataclass
 from .arguments import Arguments
 from .declared import Numbered, ident, named_words, read_by
 from .units import Units

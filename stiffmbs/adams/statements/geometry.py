@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from .arguments import Arguments
 
 IDENTITY = np.eye(3)

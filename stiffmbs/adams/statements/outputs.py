@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 from typing import Final
 
-from ...frozen_dataclass import dataclass
 from ..functions.expression import parse
 from ..functions.function import Function, is_subroutine, read_any_function, read_function, required_function
 from .arguments import Arguments

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ...frozen_dataclass import dataclass
+from dataclasses import dataclass
+
 from ..functions.function import Function, read_function
 from .arguments import Arguments
 from .declared import Numbered, expression, read_by

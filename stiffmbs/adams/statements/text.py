@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import MOST_LISTED
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import lines

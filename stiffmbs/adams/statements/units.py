@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TypeVar
 
-from ...frozen_dataclass import dataclass
 from ...reading.units.quantity import quantity
 from .arguments import Arguments
 from .text import Statement

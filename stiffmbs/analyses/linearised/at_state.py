@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...dynamics.algebraic_states import failure
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings
 from ...redundancy.redundancy import Redundancy

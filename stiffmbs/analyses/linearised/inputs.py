@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,6 @@ from ...compile.bodies import BODY_KINDS
 from ...elements.element import Force
 from ...elements.states.amount import Amount
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.model_builder import ModelBuilder
 from ...model.model_data import ModelData
 from ...reading.did_you_mean import did_you_mean

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -12,7 +12,6 @@ from scipy.sparse import csr_array
 from ...compile.machine.routines import on_drafts
 from ...dynamics.algebraic_states import failure
 from ...errors import InputError, SolverError
-from ...frozen_dataclass import dataclass
 from ...linear_analysis.modes import Mode, Motion, natural_modes
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...methods import NotebookMethods

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import Linearised, linearised
 

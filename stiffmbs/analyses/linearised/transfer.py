@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Unpack
 
 import numpy as np
@@ -11,7 +12,6 @@ from ...dynamics.dynamics import Dynamics
 from ...elements.requests.order import reading
 from ...elements.requests.output import Term
 from ...errors import InputError, SolverError, refuse_text
-from ...frozen_dataclass import dataclass
 from ...linear_analysis.state_space import StateMatrix
 from ...linear_analysis.tangent_space import Linearised
 from ...linear_analysis.transfer import Input, Transfer, effect

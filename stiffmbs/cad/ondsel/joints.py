@@ -7,10 +7,10 @@ marker i in the axes of j. A joint whose axes need not be parallel is therefore 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ..assembly import CadFault, Frame, Seat, Tie, at_angle, off_axis
 from .tree import Item
 

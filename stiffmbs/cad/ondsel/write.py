@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.orientation import matrix
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.scene import Scene
 from ...model.settings import DEFAULT_POINTS, RunSettings
 from ...model.spatial_model import SpatialData

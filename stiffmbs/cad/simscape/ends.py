@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ...reading.files.xml_nodes import Node
 from ..assembly import CadFault, Frame, Seat, axes_along
 from .instances import Instance, numbers, transform

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ...reading.files.xml_nodes import Node
 from ..assembly import WORLD, CadFault, Frame, finite, rotation
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ..terms import KERNEL_ARGUMENTS, KERNEL_SIGNATURE
 
 STATE = ("t", "q", "turn", "u", "a", "lam", "mu")

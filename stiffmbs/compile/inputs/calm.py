@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ...reading.formula.nodes import TIME, reading_order
 from .enclosure import Enclosure
 from .features import PIECES_OF_A_STEP, aside, conditions

@@ -7,13 +7,12 @@ chapters 2, 6 and 9. Bounds are not rounded outwards; the error is of the order 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import reduce
 from math import factorial
 from typing import TypeAlias
 
 import numpy as np
-
-from ...frozen_dataclass import dataclass
 
 Operand: TypeAlias = "Enclosure | float"
 """Enclosure, or a number."""

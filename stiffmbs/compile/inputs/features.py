@@ -10,14 +10,13 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.formula.functions import EACH, IN_FORMULAS, Breakpoints
 from ...reading.formula.nodes import TIME, reading_order
 from ..system import System

@@ -5,14 +5,13 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Set
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, get_args
 
 import numpy as np
 
 from ...elements.element import Element, Joint
-from ...frozen_dataclass import dataclass
 from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
 from ...reading.formula.functions import IN_FORMULAS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 from ...cache import entries, library
 from ...cache.contents import Kind
 from ...cache.source_files import digest_of, modules_within, python_files
-from ...frozen_dataclass import dataclass
 from ...interrupts import uncollected
 from . import drafts
 from .linking import Compiled, Signatures, c_types, linked, sealed, symbol, unsealed

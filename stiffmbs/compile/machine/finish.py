@@ -10,11 +10,11 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from ...cache import entries
 from ...cache.contents import FINISHING
-from ...frozen_dataclass import dataclass
 from .compiler import compiled_ahead
 from .drafts import draft_in
 from .linking import sealed

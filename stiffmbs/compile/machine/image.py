@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from .layout import CACHE_LINE, OWN, Addressed, Layout, Table, address
 
 WORD = np.dtype(np.int64).itemsize

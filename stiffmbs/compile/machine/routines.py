@@ -6,10 +6,10 @@ import importlib
 import pkgutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
 
-from ...frozen_dataclass import dataclass
 from ...tuning import parameters_are_changed, values_in
 from . import drafts
 from .compiler import compiled_routines, compiled_source

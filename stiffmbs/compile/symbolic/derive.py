@@ -8,7 +8,7 @@ generalised force on the first body as force and torque about the element's poin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from random import Random
 
@@ -17,7 +17,6 @@ import sympy as sp
 from ...elements.element import Force, Joint
 from ...elements.states.equation import AngleCounter, Reported, SampledUpdate, StateEquation
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ..kind import Kind
 from .continuous_angle import away_from_pole
 from .element import SymbolicElement

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,6 @@ import sympy as sp
 
 from ...elements.element import IN_EQUATIONS
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from .canonical import product, total
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Slope

@@ -7,12 +7,12 @@ and d = T(theta) u. Selig, Geometric Fundamentals of Robotics (2005), ch. 4.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ...frozen_dataclass import dataclass
 from .relative_rotation import COSINE, RelativeRotation, RotationVector
 
 if TYPE_CHECKING:

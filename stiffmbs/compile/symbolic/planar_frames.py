@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
 
-from ...frozen_dataclass import dataclass
 from ..bodies import PLANE
 from .differentiate import Slope
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
-
-from ...frozen_dataclass import dataclass
 
 
 class RotationVector(sp.Function):  # type: ignore[misc]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from itertools import combinations
@@ -18,7 +19,6 @@ from typing import Any, Final
 import sympy as sp
 from sympy.printing.printer import Printer
 
-from ...frozen_dataclass import dataclass
 from .differentiate import Derivatives
 
 Number = int | Fraction | float

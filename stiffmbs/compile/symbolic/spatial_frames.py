@@ -11,13 +11,12 @@ of Multibody Systems (2013), sec. 2.3, 2.4.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...frozen_dataclass import dataclass
 from ..bodies import SPACE
 from .differentiate import Derivatives, Slope
 from .relative_rotation import product

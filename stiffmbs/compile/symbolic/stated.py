@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
 from ...elements.element import Force, Joint
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ..kind import Kind
 from .symbols import Symbols, symbols_of
 

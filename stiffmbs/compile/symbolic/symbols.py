@@ -5,14 +5,13 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 import sympy as sp
 
 from ...elements.element import Joint
-from ...frozen_dataclass import dataclass
 from ...reading.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...reading.formula.names import REACTIONS
 from ...reading.formula.nodes import TIME

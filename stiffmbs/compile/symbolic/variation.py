@@ -8,10 +8,10 @@ assumed zero from its values: tanh and exp are exactly constant in floating poin
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import sympy as sp
 
-from ...frozen_dataclass import dataclass
 from .symbols import Symbols
 
 MOST_SUMMANDS = 100

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from ...frozen_dataclass import dataclass
 from ...reading.marker import MarkerReference
 from ...reading.units import si
 from ..element import CompiledTerms, Force

@@ -6,7 +6,8 @@ angles, components of joints and forces, and every channel.
 
 from __future__ import annotations
 
-from ...frozen_dataclass import dataclass
+from dataclasses import dataclass
+
 from ...reading.formula.names import PLANE, SPACE, FormulaNames
 
 OF_RUN = {"energy": ("kinetic", "potential", "total"), "constraint": ("position", "velocity")}

@@ -9,9 +9,8 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from ...frozen_dataclass import dataclass
 from ...reading.formula.nodes import TIME
 from ...reading.formula.text import UNIT
 from ...reading.marker import MarkerReference

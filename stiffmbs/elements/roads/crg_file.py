@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import finite_number

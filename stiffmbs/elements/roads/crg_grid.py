@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.files.requested import Fields, unused_notes
 from ...reading.files.text_file import file_content
 from .crg_file import CrgHeader, Entry, read_header, read_records

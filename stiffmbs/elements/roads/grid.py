@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.files.text_file import file_text, finite_number, lines
 from ...reading.table import Table
 from ..element import Expr, Symbolic

@@ -7,12 +7,12 @@ tested before the run.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.table import Table
 from ..element import Expr, Symbolic, sp
 from .rolling_filter import table_of

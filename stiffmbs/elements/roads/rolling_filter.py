@@ -9,13 +9,13 @@ Dynamics 8 (1979) 1-32. A cam (`stiffmbs.elements.roads.envelope`) does the same
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Literal
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.formula.formula import Formula
 from ...reading.table import Table
 

@@ -6,7 +6,8 @@ to the spin axis and to the wheel's heading (Pacejka, Tire and Vehicle Dynamics,
 
 from __future__ import annotations
 
-from ...frozen_dataclass import dataclass
+from dataclasses import dataclass
+
 from ..element import Expr, Matrix, Symbolic, sp
 from ..roads.envelope import enveloped
 from ..roads.road import above_zero, magnitude

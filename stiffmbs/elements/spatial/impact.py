@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from ...frozen_dataclass import dataclass
 from ...reading.fields import Measured
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp

@@ -6,10 +6,9 @@ which need the formula of Fx and Fy alone, and differentiated by the implicit fu
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...frozen_dataclass import dataclass
 from ..element import Expr, Symbolic, sp
 from ..roads.road import above_zero
 from .contact_point import ContactPoint, contact_point, slips, yaw_rate

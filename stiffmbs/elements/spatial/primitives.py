@@ -7,11 +7,11 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import Field
 
-from ...frozen_dataclass import dataclass
 from ..element import Expr, Matrix, Symbolic
 from ..initial_pose import InitialPose
 from ..joints.pair import Pair

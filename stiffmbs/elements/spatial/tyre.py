@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from ...frozen_dataclass import dataclass
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp
 from ..roads.envelope import Envelope

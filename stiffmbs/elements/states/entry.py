@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from ...frozen_dataclass import dataclass
 from ...reading.fields import Described
 from ...reading.formula.formula import Formula
 

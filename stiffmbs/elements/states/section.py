@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from importlib import import_module
 from typing import Annotated, Any
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.quoted import quoted, written
 from ...reading.formula.dimension import UNKNOWN, Known

@@ -6,9 +6,10 @@ eq. 1 to 10; Pacejka, Tire and Vehicle Dynamics (2012), A3.1 to A3.6; MF-Tyre/MF
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from sympy import Float, Rational, atan, sqrt, tan
 
-from ...frozen_dataclass import dataclass
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
 

@@ -7,9 +7,10 @@ Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979;
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from sympy import Float, Rational, tan
 
-from ...frozen_dataclass import dataclass
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero, clipped, magnitude
 from .magic_formula import Curve, Forces, Formula, Name, Slip, Torque

@@ -12,11 +12,10 @@ Pacejka (2012), 4.E69 and 4.E70.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
 
-from ...frozen_dataclass import dataclass
 from ..element import Symbolic
 from ..roads.road import above_zero, magnitude
 

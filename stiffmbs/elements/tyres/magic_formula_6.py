@@ -9,11 +9,10 @@ ISO axes; Besselink, Schmeitz, Pacejka, An improved Magic Formula/Swift tyre mod
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from sympy import Float, atan, cos, exp, pi, sin, sqrt, tan
 
-from ...frozen_dataclass import dataclass
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
 from . import magic_formula as earlier

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import file_text, finite_number, lines

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-
-from ...frozen_dataclass import dataclass
 
 NEARLY = 1e-9
 """Relative tolerance for coincident points and parallel directions."""

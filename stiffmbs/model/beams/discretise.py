@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from ...errors import prefixed
-from ...frozen_dataclass import dataclass
 from .axis import Arc, Piece, frame, upward
 from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes

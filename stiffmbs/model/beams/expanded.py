@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ...elements.spatial.orientation import IDENTITY, from_matrix
 from ...elements.turns import GROUND_AXES
-from ...frozen_dataclass import dataclass
 from ...reading.files.yaml_text import Content
 from .discretise import Element, Line, Node, discretise
 

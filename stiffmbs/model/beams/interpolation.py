@@ -8,13 +8,13 @@ Comput. Phys. 54 (1984) 468-488; Wang, Sprague, Jonkman, Johnson, BeamDyn, Wind 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cache
 from typing import cast
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from ...frozen_dataclass import dataclass
 from .stiffness import node_weights
 
 LARGEST = 4

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, cast
 
@@ -17,7 +18,6 @@ from pydantic import Field, model_validator
 
 from ...elements.geometry import one_of
 from ...errors import prefixed
-from ...frozen_dataclass import dataclass
 from ...reading.fields import Described, Measured
 from ...reading.units import si
 from .open_section import of_rectangles, of_walls

@@ -12,11 +12,10 @@ import copy
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ...elements.requests.names import OF_PLANE
 from ...elements.requests.output import Output
-from ...frozen_dataclass import dataclass
 from ...reading.files.yaml_text import Content
 from ...reading.formula.formula import Formula
 from ...reading.formula.full_names import with_full_names

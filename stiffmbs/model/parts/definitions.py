@@ -5,11 +5,11 @@ from __future__ import annotations
 import copy
 import functools
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.fields import located
 from ...reading.files.include import read_including

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from ...elements.body import check_names
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.fields import located, mapping
 from ...reading.files.yaml_text import Content
 from ...reading.names import MOUNT, beginnings

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...elements.element import Element, Joint
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.did_you_mean import did_you_mean
 from ...reading.fields import Described
 from ...reading.formula.formula import Formula

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from ...elements.body import Body
-from ...frozen_dataclass import dataclass
 from ...reading.units import si
 from .frame import Frame, Use
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -21,7 +22,6 @@ from ...elements.spatial.orientation import (
     product,
     rotated,
 )
-from ...frozen_dataclass import dataclass
 from .frame import Frame, Use
 
 

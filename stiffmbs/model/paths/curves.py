@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-
-from ...frozen_dataclass import dataclass
 
 
 @dataclass(frozen=True)

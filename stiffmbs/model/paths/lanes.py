@@ -6,11 +6,10 @@ ISO 3888-1:2018, Passenger cars, test track for a severe lane-change manoeuvre, 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from .curves import CURVES
 
 ROUGHNESS = 30.0

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from .quoted import quoted, written
 from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text

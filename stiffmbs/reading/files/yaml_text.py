@@ -6,12 +6,11 @@ import re
 import sys
 import unicodedata
 from collections.abc import Collection
-from dataclasses import field
+from dataclasses import dataclass, field
 from io import StringIO
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ...errors import InputError, prefixed
-from ...frozen_dataclass import dataclass
 from .quoted import first_line, quoted
 
 if TYPE_CHECKING:

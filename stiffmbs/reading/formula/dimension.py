@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from ...frozen_dataclass import dataclass
 from ..units.units import DIMENSIONS, NUMBER, Dimension, Quantity, named_unit
 from .text import FormulaError, as_written
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
-from ...frozen_dataclass import dataclass
 from ..marker import MarkerReference
 from ..table import Table
 from ..units.units import Quantity

@@ -9,12 +9,12 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial, reduce
 from typing import Any
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ..did_you_mean import instead_of
 from .dimension import Known, Part, alike, of_angle, of_branch, of_first, of_numbers, of_root, of_step, plain_always
 from .size import within

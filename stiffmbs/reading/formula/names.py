@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...frozen_dataclass import dataclass
 from ..did_you_mean import did_you_mean
 from ..joint_name import ORDERS, joint_channels
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache
 
-from ...frozen_dataclass import dataclass
 from ..did_you_mean import instead_of
 from ..files.quoted import quoted
 from ..formula.text import FormulaError

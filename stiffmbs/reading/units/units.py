@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
-
-from ...frozen_dataclass import dataclass
 
 Dimension = tuple[float, ...]
 """Exponents of kg, m and s; angles have none."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ...elements.spatial.number_format import plain
-from ...frozen_dataclass import dataclass
 from ...reading.files.yaml_text import Content
 from ..robot import Robot, RobotFault, Segment, Transmission
 from .joints import along_axis

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
 from ...elements.spatial.number_format import vector
 from ...elements.spatial.orientation import IDENTITY, from_matrix, product, rotated
-from ...frozen_dataclass import dataclass
 from ...reading.files.yaml_text import Content
 from ...reading.formula.functions import FUNCTIONS
 from ...reading.marker import GROUND

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Final
 
 import numpy as np
 
 from ...elements.spatial.orientation import product
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ...reading.files.xml_nodes import Node
 from ..contact import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SPHERE, USUAL, Contact, Given, Shape, split

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from os.path import isdir, isfile
 from pathlib import Path
 from typing import Final
 
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ...reading.files.text_file import file_text
 from ...reading.files.xml_nodes import FileFault, Node, parsed

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ...elements.spatial.orientation import conjugate, rotated
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import JointKind, LinkJoint, RobotFault

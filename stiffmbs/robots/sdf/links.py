@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
 from ...elements.spatial.orientation import matrix
-from ...frozen_dataclass import dataclass
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault
 from .poses import flag, number, pose_of

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
 from ...elements.spatial.orientation import IDENTITY, ROUGH, Quaternion, about, conjugate, product, rotated
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault

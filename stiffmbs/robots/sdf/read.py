@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import listed, quoted
 from ...reading.files.requested import unused_notes
 from ..robot import Closure, Connection, Link, LinkJoint, Robot, RobotFault, Transmission

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
-from ...frozen_dataclass import dataclass
 from ...reading.files.quoted import listed, quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault

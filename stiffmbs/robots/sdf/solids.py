@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ...elements.spatial.orientation import matrix
-from ...frozen_dataclass import dataclass
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault
 from .poses import Pose, number, numbers, pose_of, text_of

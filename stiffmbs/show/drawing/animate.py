@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,6 @@ import numpy as np
 from ...analyses.job import Runnable, data_of
 from ...analyses.run import run
 from ...errors import InputError, refuse_missing, refuse_text
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole

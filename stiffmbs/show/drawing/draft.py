@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ...reading.marker import GROUND
 from . import solids
 from .scene_graph import Anchor, Line, Link, Part, Role, Solid

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import InputError, not_installed
-from ...frozen_dataclass import dataclass
 from ..style import COLORS
 from .painted import extent, painted
 from .picture import Shown, empty_sheet, explain, paint, prepare, widened, write_names

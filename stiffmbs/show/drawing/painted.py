@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ...reading.marker import GROUND
 from ...results.scales import ROUNDING
 from .poses import FAR, Poses

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ..style import new_sheet
 from .painted import Patch, extent, largest_force, painted
 from .poses import Poses

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND, MarkerReference
 from ...results.marker_motion import place

@@ -7,12 +7,10 @@ mass.  The poses of all bodies (`stiffmbs.show.drawing.poses`) make a picture of
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-
-from ...frozen_dataclass import dataclass
 
 Role = Literal["body", "ground", "joint", "drive", "force", "rubber", "floor"]
 """Role of a drawn object; it determines the color."""

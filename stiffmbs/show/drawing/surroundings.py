@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...elements.roads.crg import CrgRoad
 from ...elements.roads.road import Road
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND
 from .poses import Poses

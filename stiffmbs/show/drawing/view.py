@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 
 ISOMETRIC = math.degrees(math.asin(math.tan(math.radians(30))))
 

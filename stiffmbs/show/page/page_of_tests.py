@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from ..origin import origin_section
 from ..sections import MISSING, Section, Table, changed_values
 from .data import environment, page_file

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from ...compile.equations import Equations
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from .native.parameters import EXCLUDED

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..explicit.native.parameters import CONTROL

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,6 @@ from ...compile.system import System
 from ...dynamics.dynamics import Dynamics, OutputRows
 from ...dynamics.storage import STORAGE, blocks, release
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...notes import Note, NoteKind
 from ...tuning import tuned

@@ -12,13 +12,13 @@ derivative of the cubic predicts.  A vibration of a few tolerances is damped wit
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from ...compile.equations import Equations
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..ida.native.parameters import LOOP

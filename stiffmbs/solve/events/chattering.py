@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.friction_loads import REMEDY, ambiguous_loads_clause
 from ...errors import ChatteringError, SolverError
-from ...frozen_dataclass import dataclass
 from ...tuning import tuned
 from .discontinuity import JUMP, noise_of, sliding
 from .native.parameters import SEARCH

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ...compile.system import System
 from ...compile.written_values import table_arguments
-from ...frozen_dataclass import dataclass
 from ...notes import Note
 from ...reading.table import Table
 from ..reasons import Reason

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -13,7 +14,6 @@ from ...compile.machine.layout import address, addresses
 from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...reading.files.quoted import MOST_LISTED
 from ...tuning import tuned

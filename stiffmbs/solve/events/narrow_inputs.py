@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...compile.inputs.features import INSTANTS, InputFeatures
 from ...compile.inputs.of_time import Input
 from ...dynamics.dynamics import Dynamics
-from ...frozen_dataclass import dataclass
 from ...tuning import tuned
 from ..trajectory import Grid, Outcome, Trajectory
 from .native.parameters import SEARCH

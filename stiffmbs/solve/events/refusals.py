@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -10,7 +11,6 @@ from ...compile.system import System
 from ...compile.written_values import beyond
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...model.settings import DEFAULT_POINTS
 from ...notes import Note
 from ...tuning import tuned

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...compile.state import LEFT_OPEN
@@ -9,7 +11,6 @@ from ...dynamics.algebraic_states import failure
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...tuning import tuned
 from ..suspect import most_violated
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from ...dynamics.algebraic_states import no_value_ahead
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..engine import Begun, Engine, Reached

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.machine.routines import Routine, together
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import CHATTERING, jump_sentence

@@ -10,13 +10,13 @@ jump. The error control shortens steps until a jump within one satisfies the tol
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.machine.layout import address
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.elimination.eliminated import ATTEMPT
-from ...frozen_dataclass import dataclass
 from ...tuning import tuned
 from ..error_control.relaxation import RELAXATION
 from ..events.chattering import CHATTERING

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from ...compile.machine.layout import Table, packed
 from ...compile.machine.routines import Routine
-from ...frozen_dataclass import dataclass
 from .native.layouts import SCHEME
 
 Row = Mapping[int, float]

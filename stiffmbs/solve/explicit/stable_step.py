@@ -9,6 +9,7 @@ at a step's end indicate that the limit is far exceeded, or that it has limited 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,7 +18,6 @@ from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
 from ...dynamics.algebraic_states import rates_by_states
 from ...dynamics.dynamics import ACCELERATE, Dynamics
-from ...frozen_dataclass import dataclass
 from ...tuning import tuned
 from .integration import Integration
 from .scheme import Scheme

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...sparse.elimination_order import elimination_order
 from ..error_control.error_test import CHOSEN, ErrorControl

@@ -7,6 +7,7 @@ import importlib.util
 import os
 import re
 import sys
+from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -14,7 +15,6 @@ from typing import Any, Final
 import numpy as np
 
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 
 VERSION: Final = 7
 """Major version of SUNDIALS that the declarations and the loop are written for."""

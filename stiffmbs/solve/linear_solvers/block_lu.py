@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Final
 
@@ -10,7 +11,6 @@ import numpy as np
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import QUAD, at_a_line, held_once, packed_with_memory
 from ...compile.machine.routines import Routine
-from ...frozen_dataclass import dataclass
 from ...sparse.block_updates import updates
 from ...sparse.blocks import Blocks, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ...compile.machine.routines import Routine
-from ...frozen_dataclass import dataclass
 from ...sparse.elimination_order import EliminationOrder
 from ...tuning import tuned
 from ..ida.operations import take_place

@@ -6,12 +6,11 @@ equations solved by Radau methods, J. Comput. Appl. Math. 111 (1999) 93-111.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
-
-from ...frozen_dataclass import dataclass
 
 MOST_BETWEEN = 4
 """Largest number of corrections of a polynomial between the nodes."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...analyses.job import Runnable
 from ...errors import InputError, SolverError, prefixed
-from ...frozen_dataclass import dataclass
 from ...model.settings import Settings
 from ...reading.files.quoted import written
 from ..outputs import REDUCTIONS, Output, channel_of, outputs_of, parsed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from ...elements.spatial.marker import Point
 from ...elements.spatial.orientation import IDENTITY, conjugate, rotated
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.files.effective import chosen_options
 from ...model.files.expand import set_value, unshared
 from ...model.parts.placing import placed_in_use

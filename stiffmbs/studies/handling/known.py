@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.paths.lanes import LENGTH
 from .car import STEER, Car
 from .parameters import SPEED

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 
 LINEAR = 4.0
 """Lateral acceleration up to which the gradients at zero are fitted, m/s^2."""

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final, TypeVar
 
 from ...errors import InputError, prefixed
-from ...frozen_dataclass import dataclass
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.files.yaml_text import read_yaml
 from ...reading.formula.text import FormulaError

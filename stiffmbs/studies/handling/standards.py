@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from .braking import braking_in_a_turn, of_braking_in_a_turn, of_straight_braking, straight_braking
 from .car import Manoeuvre
 from .known import SEEN, Known, Metrics, Run

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ...frozen_dataclass import dataclass
 from .car import Car, Manoeuvre
 from .known import SEEN, Known, Metrics, Run
 from .metrics import at_zero, rollover_threshold, static_stability_factor, understeer_gradient

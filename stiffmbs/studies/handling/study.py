@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from dataclasses import asdict, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,6 @@ import numpy as np
 from ...analyses.load_scene import load_scene
 from ...analyses.run import run
 from ...errors import InputError, SolverError, StiffmbsError, refuse_text
-from ...frozen_dataclass import dataclass
 from ...model.scene import Scene
 from ...model.settings import SteadyMotion
 from ...processes import process_pool

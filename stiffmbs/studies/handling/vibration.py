@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...reading.did_you_mean import instead_of
 
 NONE = np.inf

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ...elements.joints.drive import Drive
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.did_you_mean import instead_of
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ...errors import InputError, SolverError
-from ...frozen_dataclass import dataclass
 from .markers import MarkerPose
 
 ORTHOGONAL: Final = 1e-6

@@ -7,14 +7,13 @@ accelerations as outputs, x = T z, and the rows of x' in z, times T^-1, are A an
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...analyses.linearised.transfer import transfer
 from ...compile.bodies import QUATERNION
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...linear_analysis.transfer import Transfer
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,6 @@ from ...compile.quaternions import CONJUGATE, times
 from ...dynamics.joint_tree import Frame, JointTree
 from ...dynamics.native.parameters import CONSISTENCY
 from ...errors import InputError, SolverError
-from ...frozen_dataclass import dataclass
 
 SINGULAR: Final = 1e-5
 """Smallest singular value of the equations of the dependent rates, relative to the largest, below which a pose is singular. Near a dead

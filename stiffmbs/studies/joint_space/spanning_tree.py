@@ -7,6 +7,7 @@ trial of another pose shows whether these screws describe the joint everywhere: 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import count
 from typing import Final
 
@@ -18,7 +19,6 @@ from ...dynamics.dynamics import Dynamics
 from ...dynamics.joint_tree import Frame, JointTree, Tree
 from ...elements.element import Joint
 from ...elements.turns import TURN
-from ...frozen_dataclass import dataclass
 from ...results.joint_angles import joint_angles
 from ...results.joint_coordinates import JointCoordinates
 from ..joint_pose import JointPose

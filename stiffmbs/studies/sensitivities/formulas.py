@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError, SolverError
-from ...frozen_dataclass import dataclass
 from ..outputs import REDUCTIONS, TIME, channel_of, evaluated, parsed, parts_of
 
 SELECTED = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
@@ -14,7 +15,6 @@ from ...compile.reactions import reactions
 from ...compile.system import System
 from ...dynamics.dynamics import OutputRows
 from ...errors import InputError, SolverError
-from ...frozen_dataclass import dataclass
 from ...model.settings import RunSettings
 from ...redundancy.messages.redundancy import derivative_notes
 from ...results.channels import channels_of, counters, motion_channels, state_channels

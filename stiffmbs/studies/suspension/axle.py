@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from numbers import Real
 
 import numpy as np
@@ -14,7 +14,6 @@ from ...elements.joints.drive import Drive
 from ...elements.spatial.marker import Marker
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.formula.formula import Formula

@@ -7,6 +7,7 @@ Definitions and signs: docs/guide/kinematics_and_compliance.md (ISO 8855).
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from ...dynamics.dynamics import Dynamics
 from ...elements.forces.springs import AngleSpring, LineSpring, Spring
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from .axle import Axle, Wheel
 from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from numbers import Integral, Real
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from ...analyses.equilibrium import equilibria_over_time
 from ...analyses.job import Runnable, data_of, prepare
 from ...errors import InputError, refuse_text
-from ...frozen_dataclass import dataclass
 from ...reading.did_you_mean import did_you_mean
 from ...reading.table import Table
 from .axle import Axle, axle_of

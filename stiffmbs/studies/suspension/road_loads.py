@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...analyses.job import Runnable, data_of
 from ...elements.spatial.elastic import Elastic
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND
 from ...results.marker_motion import Measures, dot

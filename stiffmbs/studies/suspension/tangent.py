@@ -7,6 +7,7 @@ J x_c = c. Ideal joints leave z to idle freedoms such as the spin of a wheel; bu
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +19,6 @@ from ...equilibria.force_balance import balance_at
 from ...equilibria.matrices import dense
 from ...equilibria.steady_motion import at_rest
 from ...errors import SolverError
-from ...frozen_dataclass import dataclass
 from ...linear_analysis.state_space import Constraints
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND, MarkerReference

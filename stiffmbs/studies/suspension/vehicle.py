@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...elements.spatial.marker import Marker
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
-from ...frozen_dataclass import dataclass
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND
 from .axle import SAME_AXLE, Axle

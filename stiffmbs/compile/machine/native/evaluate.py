@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import cos, pi, sin
 
-from ....frozen_dataclass import dataclass
 from .access import call_kernel, compiled, floats, ints, shifted, state_view
 from .orientation import TURN_STRIDE, add_by_rotation, share_orientation
 from .quads import item_of, nearest_whole, plus_product, product_of, quad_of, spread

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ....frozen_dataclass import dataclass
 from .code import Code, tags
 from .expressions import Expressions
 from .statements import Statements, parameters

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
-
-from ....frozen_dataclass import dataclass
 
 LLVM_TYPES = {
     "int": "i64",

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from ....frozen_dataclass import dataclass
 from ....reading.marker import MarkerReference
 from ...element import CompiledTerms, Force
 from .bodies import FloatingFrame

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 from pydantic import Field
 
-from ....frozen_dataclass import dataclass
 from ....reading.units import si
 from ...element import Expr, Matrix, Symbolic, sp
 from ..impact import Impact, Touch

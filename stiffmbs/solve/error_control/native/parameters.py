@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
-from ....frozen_dataclass import dataclass
 from ....tuning import tuned
 
 

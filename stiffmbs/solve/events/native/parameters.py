@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import log2
 from sys import float_info
 
-from ....frozen_dataclass import dataclass
 from ....tuning import tuned
 
 EPSILON = float_info.epsilon

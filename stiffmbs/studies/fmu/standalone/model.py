@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from ....dynamics.dynamics import OUTPUT_POINTS, Dynamics, OutputRows
 from ....dynamics.held_inputs import AffineNumber
 from ....dynamics.native.layouts import JUDGED
 from ....errors import InputError
-from ....frozen_dataclass import dataclass
 from ....model.scene import Scene
 from ....notes import Note, NoteKind, Severity
 from ....reading.did_you_mean import did_you_mean
