@@ -114,15 +114,16 @@ def test_a_spatial_scene_loads_no_planar_kinds():
     assert not {f"stiffmbs.{name}" for name in unused} & set(found.stdout.split())
 
 
-def test_a_run_without_tables_and_drives_loads_no_masked_arrays():
-    """`numpy.unique` and the functions of sets load them; they are 3 % of a short run."""
+@pytest.mark.parametrize("scene", ["cart_pendulum", "half_car"])
+def test_a_run_without_tables_and_events_loads_no_masked_arrays_and_random_numbers(scene):
+    """`numpy.unique` and the functions of sets load masked arrays; both are 3 % of a short run."""
     program = (
         "import sys, stiffmbs;"
-        f"stiffmbs.run({str(ROOT.parent / 'examples' / 'cart_pendulum.yaml')!r}, duration=0.1);"
+        f"stiffmbs.run({str(ROOT.parent / 'examples' / f'{scene}.yaml')!r}, duration=0.1);"
         "print(*sys.modules)"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert "numpy.ma" not in found.stdout.split()
+    assert not {"numpy.ma", "numpy.random"} & set(found.stdout.split())
 
 
 def test_help_loads_nothing_heavy():

@@ -32,7 +32,7 @@ def ambiguous_loads(
             return []
         lam = state.lam.copy()
     joints: dict[str, list[int]] = {}
-    for row in np.unique(system.term("acceleration", "f_lam").column).tolist():
+    for row in sorted(set(system.term("acceleration", "f_lam").column.tolist())):
         joints.setdefault(system.equations[row][0], []).append(row)
     opposite = list(joints.values())
     if len(joints) > 1:

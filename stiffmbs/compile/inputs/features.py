@@ -20,6 +20,7 @@ from ...errors import InputError
 from ...reading.formula.functions import EACH, IN_FORMULAS, Breakpoints
 from ...reading.formula.nodes import TIME, reading_order
 from ..system import System
+from .distinct import distinct
 from .enclosure import ROUNDING
 from .of_time import Input, inputs_of
 from .pieces import Bounds, InputPieces
@@ -53,7 +54,7 @@ class InputFeatures:
     @cached_property
     def all_breakpoints(self) -> np.ndarray:
         """Breakpoints within and at both ends, s."""
-        return np.union1d(self.breakpoints, self.at_ends) if len(self.at_ends) else self.breakpoints
+        return distinct(self.breakpoints, self.at_ends) if len(self.at_ends) else self.breakpoints
 
     @cached_property
     def ends(self) -> np.ndarray:
@@ -102,7 +103,7 @@ class InputFeatures:
         gaps = np.concatenate([[start], self.breakpoints, [end]])
         close = np.flatnonzero(np.diff(gaps) < spacing)[: most // INSTANTS]
         between = gaps[close, None] + np.diff(gaps)[close, None] * np.linspace(0, 1, INSTANTS + 1)
-        return np.unique(np.concatenate([*parts, between.ravel()]))
+        return distinct(*parts, between)
 
 
 INSTANTS = 8
@@ -128,7 +129,7 @@ def _features(inputs: tuple[Input, ...], start: float, end: float) -> InputFeatu
     note = (
         f"'{estimated[0]}' has too many features to be listed: steps follow from a sample of them" if estimated else ""
     )
-    bends = _bends(inputs, np.union1d(breakpoints, at_ends), start, end)
+    bends = _bends(inputs, distinct(breakpoints, at_ends), start, end)
     return InputFeatures(breakpoints, *_together(bounds, breakpoints, start, end), note, at_ends, bends)
 
 
@@ -137,12 +138,14 @@ def _bends(inputs: Sequence[Input], breakpoints: np.ndarray, start: float, end: 
 
     An input with too many of them has none.
     """
-    found = [np.empty(0)]
+    found: list[np.ndarray] = []
     for each in inputs:
         if each.tables and not each.of_joint:
             with suppress(TooMany):
                 found += list(_passages(replace(each, of_joint=True), start, end))
-    times = np.unique(np.concatenate([*found, breakpoints]))
+    if not found:
+        return np.empty(0)
+    times = distinct(*found, breakpoints)
     times = _parted(times[np.diff(times, prepend=-np.inf) > 2.0 * aside(start, end)], start, end)[0]
     return times[~np.isin(times, breakpoints)]
 

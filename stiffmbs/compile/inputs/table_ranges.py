@@ -8,6 +8,7 @@ import numpy as np
 
 from ...reading.table import Table
 from ..table_values import curve, parts_of
+from .distinct import distinct
 from .enclosure import EVERYWHERE, Enclosure, Range, between_turns, hull
 from .zeros import MOST_STRETCHES, TooMany
 
@@ -27,7 +28,7 @@ class TableRanges:
         self.period = self._x[-1] - self._x[0] if table.repeats else 0.0
         self._holds = table.beyond == "hold"
         self.breakpoints = _breakpoints(table, self._x)
-        self.bends = np.union1d(self.breakpoints, _jumps_of_curvature(self._x, self._pieces))
+        self.bends = distinct(self.breakpoints, _jumps_of_curvature(self._x, self._pieces))
         h = np.diff(self._x)
         whole = np.array([np.zeros_like(h), h])
         with np.errstate(all="ignore"):
@@ -48,7 +49,7 @@ class TableRanges:
                 f"a periodic table has more than {MOST_STRETCHES:.0e} breakpoints between {low:g} and {high:g}, expected fewer"
             )
         turns = np.arange(first, last + 1)
-        found = np.unique((breakpoints + turns[:, None] * self.period).ravel())
+        found = distinct(breakpoints + turns[:, None] * self.period)
         return found[(found >= low) & (found <= high)]
 
     def enclosed(self, argument: Enclosure) -> Enclosure:

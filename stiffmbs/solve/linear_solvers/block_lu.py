@@ -14,6 +14,7 @@ from ...compile.machine.routines import Routine
 from ...sparse.block_updates import updates
 from ...sparse.blocks import Blocks, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order
+from ..any_direction import any_direction
 from ..ida.session import WhenNeeded
 from .linear_solver import COSTS, FACTOR_SIGNATURE, SOLVE_SIGNATURE, LinearSolver, Memory
 from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
@@ -78,13 +79,11 @@ class BlockLU(LinearSolver):
             "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
             **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
         }  # fmt: skip
-        random = np.random.default_rng(SEED)
-        signs = random.choice([-1.0, 1.0], self.n)
         return {
             "n": self.n, "parts": self.parts, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
             **{name: held_once(np.asarray(part, dtype=np.int64)) for name, part in lists.items()},
             **{name: held_once(part) for name, part in updates(blocks).items()},
-            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": signs * random.uniform(0.5, 1.0, self.n),
+            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": any_direction(self.n, SEED),
         }  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
