@@ -19,6 +19,10 @@ OTHERS = {
     ".bin": "a database of Adams/View: export the model there by File > Export > Adams/Solver dataset, and read the .adm",
     ".osim": "a model of OpenSim, which is not read: convert it to MJCF, for example by MyoConverter",
     ".mbd": "an input file of MBDyn, which is not read: write its nodes, joints and forces as a scene",
+    **dict.fromkeys(
+        (".step", ".stp", ".iges", ".igs"),
+        "shapes without joints: export the assembly as Simscape Multibody XML, or as .asmt from FreeCAD",
+    ),
 }
 """Files of other programs that are recognised by their suffix, and what to do with them."""
 ROBOTS = (".urdf", ".sdf", ".world", ".xml", ".mjcf")

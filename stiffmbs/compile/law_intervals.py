@@ -24,6 +24,7 @@ def _on_both_sides(*breakpoints: float) -> np.ndarray:
 
 
 TURN, DIRECTION = "turn", "direction"
+TABLE, TABLE_OF_DIRECTION = TABLES = "table", "table of a direction"
 FIXED = {
     "exp": _on_both_sides(0.5, 2.0, 6.0, 15.0, 37.0),
     "tanh": _on_both_sides(1.0, 3.0, 8.0, 19.0),
@@ -66,6 +67,7 @@ class Intervals(NamedTuple):
     - `kinks` of shape (n,): 1 for arguments of tables with a kink, 0 for others.
     - `zoned`: number of functions with breakpoints.
     - `tables` of shape (n,): 1 for arguments of tables that end at their first and last breakpoint, 0 for others.
+    - `jumping`: indices of the arguments of periodic tables that jump by periods, as the angle of a direction does.
     """
 
     first: np.ndarray
@@ -77,6 +79,7 @@ class Intervals(NamedTuple):
     kinks: np.ndarray
     zoned: int
     tables: np.ndarray
+    jumping: np.ndarray
 
     def of_kinked(self, values: np.ndarray) -> list[int]:
         """Return the number of the interval of each argument of a table with a kink, from the values of all functions."""
@@ -118,7 +121,8 @@ def _intervals_of(system: System) -> Intervals:
             dtype=np.int64,
         ),
         int(np.count_nonzero(counts)),
-        np.array([name == "table" and period == 0.0 for name, _, _, period in found], dtype=np.int64),
+        np.array([name in TABLES and period == 0.0 for name, _, _, period in found], dtype=np.int64),
+        np.flatnonzero([name == TABLE_OF_DIRECTION and period > 0.0 for name, _, _, period in found]),
     )
 
 
@@ -128,7 +132,7 @@ def _of_arguments(system: System) -> Iterator[tuple[str, np.ndarray, np.ndarray,
         own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
         for start in own:
             for name, number in group.record.laws:
-                if name != "table":
+                if name not in TABLES:
                     yield name, FIXED[name], CLOSE * _narrower(FIXED[name]), 0.0
                     continue
                 at = int(start + group.numbers[start + number])

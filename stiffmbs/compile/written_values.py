@@ -11,6 +11,7 @@ from ..reading.fields import Described
 from ..reading.formula.formula import Formula
 from ..reading.table import Table
 from .group import Group
+from .law_intervals import TABLES
 from .system import System
 from .table_values import parts_of, spline_data
 from .terms import TERM_SETS
@@ -62,7 +63,7 @@ def table_arguments(system: System) -> Iterator[tuple[str, str, Table | None]]:
             tables = {spline_data(table).tobytes(): (label, table) for label, table in tables_in(element, "")}
             for law, number in group.record.laws:
                 found: tuple[str, Table | None] = "", None
-                if law == "table":
+                if law in TABLES:
                     at = int(start + group.numbers[start + number])
                     count = int(group.numbers[at])
                     found = tables.get(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes(), found)

@@ -73,7 +73,8 @@ def read_scene(
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
-        raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
+        kind = "a list" if isinstance(found, list) else "text without keys"
+        raise InputError(f"{source}: found {kind}, expected a scene: YAML with 'bodies', as stiffmbs init writes it")
     return made_scene(found, changes, source, line, file.parent if file else None, files=files)
 
 

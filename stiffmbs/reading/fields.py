@@ -285,14 +285,21 @@ def _reason(fault: ErrorDetails) -> str:
             near = did_you_mean(found, re.findall("'([^']*)'", context["expected"])) if isinstance(found, str) else ""
             return f"found {written(found)}{near}, expected {context['expected']}"
         case "tuple_type" | "list_type":
-            of_gravity = "gravity" in fault["loc"] and isinstance(found, int | float)
-            example = f"[0, {found}], or [0, 0, {found}] in space" if of_gravity else f"[{found}]"
+            example = _as_list(found, of_gravity="gravity" in fault["loc"])
             like = isinstance(found, str | int | float) and len(example) <= MOST_QUOTED
             return f"found {written(found)}, expected a list in brackets{f': {example}' if like else ''}"
         case "dict_type" | "model_type" | "model_attributes_type":
             return f"found {written(found)}, expected a mapping of keys to values"
         case _:
             return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"
+
+
+def _as_list(found: object, of_gravity: bool) -> str:
+    """Return a list in brackets with an entry that was given without them; numbers and formulas are parts of vectors."""
+    if of_gravity and isinstance(found, int | float):
+        return f"[0, {found}], or [0, 0, {found}] in space"
+    is_name = isinstance(found, str) and all(part.isidentifier() for part in found.split("."))
+    return f"[{found}]" if is_name else f"[{found}, ...]"
 
 
 def typed(kind: str, found: object) -> object:

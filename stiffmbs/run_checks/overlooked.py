@@ -207,7 +207,7 @@ def _judged(
     places = np.flatnonzero((np.abs(off) > least).any(axis=1))
     off[places] = _free_part(found.dynamics, rows, places, off[places])
     places = places[(np.abs(off[places]) > least[places]).any(axis=1)]
-    groups = [(group, group[np.argmax(off[group] ** 2 @ system.mass)]) for group in _neighbours(places, steps)]
+    groups = [(group, _centre(group, off[group] ** 2 @ system.mass)) for group in _neighbours(places, steps)]
     groups = [
         (group, k)
         for group, k in groups
@@ -243,8 +243,22 @@ def _shortest(
     rows = found.dynamics.report(motion.t, motion.q, motion.u, near_constraints(settings))
     off = (rows.acceleration - motion.rate[: len(rows.t)]) ** 2 @ found.dynamics.system.mass
     off = np.resize(off, places.shape)
-    high = (off >= 0.25 * off.max(axis=1, keepdims=True)).sum(axis=1)
+    high = _high(off).sum(axis=1)
     return float((high * reach).min() * 2.0 / len(parts))
+
+
+def _centre(group: np.ndarray, squares: np.ndarray) -> int:
+    """Return the middle one of the places at which a contradiction, with given squares of its height, is high.
+
+    The largest one of a force that is constant within an interval may be at its edge, where any error changes the force.
+    """
+    high = group[_high(squares)]
+    return int(high[len(high) // 2])
+
+
+def _high(squares: np.ndarray) -> np.ndarray:
+    """Return a mask of the values, along the last axis, that are at least half of the largest; squares are given."""
+    return np.asarray(squares >= 0.25 * squares.max(axis=-1, keepdims=True))
 
 
 def _neighbours(places: np.ndarray, steps: np.ndarray) -> list[np.ndarray]:

@@ -48,3 +48,14 @@ def test_features_too_narrow_to_be_resolved_are_reported():
     """Some 200 000 steps would resolve it, and the run says that its results may be wrong."""
     found = stiffmbs.run(oscillator(1e-4, 0.3), duration=2.0, points=51, rtol=1e-6, solver="bdf")
     assert any("missed 'f'" in note and "may be wrong" in note for note in found.notes)
+
+
+def test_a_missed_interval_of_constant_force_is_noticed_where_a_sample_is_at_its_edge():
+    """A barrier of 15 J stops 1.6 J. A sample of the check is within its errors of the edge, the others are far inside."""
+    model = Model(gravity=(0, 0))
+    model.add("b", Body(mass=1, inertia=1, position=(1, 0), velocity=(-1.8, 0)))
+    barrier = PythonForce(i="b", of=("b.x",), function=lambda x: (3080.0 if abs(x[0] - 0.019) < 0.0025 else 0.0, 0, 0))
+    model.add("f", barrier)
+    found = stiffmbs.run(model, duration=1.0, points=51, rtol=1e-3, solver="radau")
+    assert any("missed 'f'" in note for note in found.notes)
+    np.testing.assert_allclose(found["b.vx"][-1], 1.8, rtol=1e-3)

@@ -116,7 +116,7 @@ def searched(**fields):
     integers = {"first_breakpoint": [0, 2], "near": [1], "call": [0], "found": [0], "turn": [0], "angle": [0]}
     usual = {
         **arrays, "breakpoints": np.array([0.0, np.inf]), "overlap": np.zeros(2), "band": np.zeros(1), "farthest": np.zeros(1), "n_lam": 0, **{name: np.array(value) for name, value in integers.items()},
-        "interval_low": np.array([0.0]), "interval_high": np.array([np.inf]), "n": 1, "n_event_functions": 1, "n_with_intervals": 1, "n_angles": 0, "n_turns": 0,
+        "interval_low": np.array([0.0]), "interval_high": np.array([np.inf]), "n": 1, "n_event_functions": 1, "n_with_intervals": 1, "n_angles": 0, "n_turns": 0, "n_jumping": 0, "jumping": np.empty(0, dtype=np.int64),
         "n_calls": 1, "n_nodes": 1, "n_state": 1, "row": np.ones(2), "depth": 0.0, "least": 0.0, "duration": 1.0, "narrow": 0, "begins": 0.0,
         "longest": 1.0, "unresolved": 0, "under_way": 0, "begun": 0.0, "target": np.inf, "passed": 0.0, "passage": 0.0, "first": 0.0,
         "usual": 1.0, "count": 0, "room": 10, "at_kinks": 0, "by_accelerations": 0,

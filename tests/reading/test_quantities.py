@@ -181,8 +181,21 @@ def test_the_unit_can_be_written_in_parentheses():
             r"gravity: found -9\.81, expected a list in brackets: \[0, -9\.81\], or \[0, 0, -9\.81\] in space",
         ),
         ("figure: {y: b.x}", r"figure\.y: found 'b\.x', expected a list in brackets: \[b\.x\]"),
+        ("markers: {a: {point: 0.1}}", r"found 0\.1, expected a list in brackets: \[0\.1, \.\.\.\]"),
+        (
+            "forces: {f: {type: force, i: b, force: -2*b.x}}",
+            r"force: found '-2\*b\.x', expected a list in brackets: \[-2\*b\.x, \.\.\.\]",
+        ),
     ],
 )
 def test_a_list_without_brackets_is_answered_with_an_example(entry, example):
     with pytest.raises(InputError, match=example):
         stiffmbs.read_scene(f"bodies: {{b: {{mass: 1, inertia: 1}}}}\n{entry}")
+
+
+@pytest.mark.parametrize(("text", "kind"), [("hello world", "text without keys"), ("[1, 2]", "a list")])
+def test_text_that_is_no_scene_is_answered_with_what_a_scene_is(text, kind):
+    with pytest.raises(
+        InputError, match=f"found {kind}, expected a scene: YAML with 'bodies', as stiffmbs init writes it"
+    ):
+        stiffmbs.read_scene(text)

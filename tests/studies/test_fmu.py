@@ -1,9 +1,11 @@
 """Scenes as FMUs, run by FMPy in a process of its own: an FMU brings its own Python into the program that runs it."""
 
 import json
+import shutil
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,8 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.commands.main import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 pytest.importorskip("fmpy")
 pytest.importorskip("pythonfmu")
@@ -354,3 +358,41 @@ def test_steps_from_a_restored_state_do_not_depend_on_those_before(slave):
             assert other.do_step(0.1 + 0.01 * k, 0.01)
         ends.append(value_of(other, "sled.x"))
     assert ends[0] == ends[1] == ends[2] and len(slave.made) == 2
+
+
+ROD = """
+dimensions: 3
+bodies:
+  rod:
+    type: flexible
+    mesh: meshes/rod.vtu
+    units: {{length: 1 m}}
+    material: {{E: 1e9, nu: 0.3, density: 1000}}
+    interfaces: {{root: {{plane: {{point: [0, 0, 0], normal: [1, 0, 0]}}}}}}
+    modes: 2
+joints: {{clamp: {{type: fixed, i: rod.root, j: ground}}}}
+requests: {{carried: fz(clamp)}}
+run: {{duration: 2, output: 0.01}}
+{more}
+"""
+
+
+@pytest.mark.long
+def test_an_fmu_has_the_meshes_of_its_scene(tmp_path):
+    """In folders below that of the scene; files of other folders are refused."""
+    (tmp_path / "own" / "meshes").mkdir(parents=True)
+    mesh = (EXAMPLES / "flexible" / "flexible_rod.vtu").read_bytes()
+    (tmp_path / "own" / "meshes" / "rod.vtu").write_bytes(mesh)
+    path = tmp_path / "own" / "rod.yaml"
+    path.write_text(ROD.format(more="gravity: [0, 0, -9.81]"), encoding="utf-8")
+    fmu = tmp_path / "rod.fmu"
+    stiffmbs.build_fmu(path, fmu)
+    shutil.rmtree(tmp_path / "own")
+    found = simulated(fmu)["carried"]
+    assert np.isfinite(found).all() and found.mean() > 0
+    (tmp_path / "rod.vtu").write_bytes(mesh)
+    path = tmp_path / "there" / "rod.yaml"
+    path.parent.mkdir()
+    path.write_text(ROD.format(more="").replace("meshes/rod.vtu", "../rod.vtu"), encoding="utf-8")
+    with pytest.raises(InputError, match=r"with files of its own folder only: .*rod\.vtu"):
+        stiffmbs.build_fmu(path, fmu)

@@ -50,6 +50,7 @@ def no_search(monkeypatch):
             np.zeros(count, dtype=np.int64),
             count,
             np.zeros(count, dtype=np.int64),
+            np.empty(0, dtype=np.int64),
         )
 
     monkeypatch.setattr(event_watch, "intervals_of", far_away)

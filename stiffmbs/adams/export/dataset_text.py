@@ -81,10 +81,15 @@ def written_dataset(scene: SpatialData, source: str = "scene") -> WrittenDataset
     if refused:
         raise InputError(f"{source}: a dataset has no statement for " + "; ".join(refused))
     requests = [f"not written (a dataset has no function for them): requests {listed(lost)}"] if lost else []
+    inputs = (
+        [f"a dataset has no inputs; their values in the scene are numbers: {listed(tuple(scene.inputs))}"]
+        if scene.inputs
+        else []
+    )
     letters = (
         [] if "".join(lines).isascii() else ["names and texts of the dataset are in ASCII letters (ä is a, Θ is Theta)"]
     )
-    notes = (*recording.notes(), *requests, *letters)
+    notes = (*recording.notes(), *requests, *inputs, *letters)
     remarks = [f"! {note}" for note in notes]
     return WrittenDataset(_text(lines), _text([f"! {scene.name}", *remarks, *commands]), notes)
 

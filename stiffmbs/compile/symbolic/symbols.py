@@ -278,7 +278,8 @@ class _Builder:
 
     def spline(self, table: sp.Symbol, x: sp.Expr) -> sp.Expr:
         """Return the value of the table at an offset."""
-        self.symbols.note_law(sp.sympify(x), "table", table)
+        argument = sp.sympify(x)
+        self.symbols.note_law(argument, "table of a direction" if self._of_direction(argument) else "table", table)
         return Spline(x, table, sp.Integer(0))
 
 

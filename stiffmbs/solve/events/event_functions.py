@@ -60,6 +60,7 @@ class EventSearch:
         self._extent = {name: np.empty(n) for name in ("lowest", "highest", "outside", "left")}
         self._arrays = {
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "kinked": intervals.kinks, "tables": intervals.tables, "n_with_intervals": intervals.zoned,
+            "n_jumping": len(intervals.jumping), "jumping": intervals.jumping,
             "n": n, "n_event_functions": n_event_functions, "band": self.band, "farthest": self.farthest,
             "first_breakpoint": intervals.first, "breakpoints": self._breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "interval_low": self._within[0], "interval_high": self._within[1], "found": self.found,
             "n_state": n_state, "n_lam": n_lam, "lam": np.zeros(n_lam), "by_accelerations": int(n_lam > 0 or len(system.algebraic_coordinates) > 0), "n_nodes": NODES, "node": WHOLE, "weight": weight,

@@ -76,7 +76,7 @@ def build_fmu(
     Raises
     ------
     InputError
-        If the scene is invalid, or has stages, or there is no such channel.  With Python, also if it needs other files, or
+        If the scene is invalid, or has stages, or there is no such channel.  With Python, also if it needs files of other folders, or
         PythonFMU is missing; without, if only an FMU with Python can solve the scene, or there is no C compiler.
     """
     found = written_fmu(path, output, outputs, changes, native, version)
@@ -112,6 +112,7 @@ def _written_with_python(
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         (folder / SCENE).write_text(_content(scene), encoding="utf-8")
+        others = _copied_files(scene, folder)
         about = _about(scene, folder / SCENE, outputs)
         (folder / ABOUT).write_text(json.dumps(about), encoding="utf-8")
         script = folder / f"{name}_fmu.py"
@@ -119,7 +120,7 @@ def _written_with_python(
         before = list(sys.path)
         try:
             built = FmuBuilder.build_FMU(
-                script, folder / BUILT, project_files=[folder / SCENE, folder / ABOUT], canGetAndSetFMUstate=True, canSerializeFMUstate=True
+                script, folder / BUILT, project_files=[folder / SCENE, folder / ABOUT, *others], canGetAndSetFMUstate=True, canSerializeFMUstate=True
             )  # fmt: skip
             written_whole(target, lambda part: shutil.copyfile(built, part))
         finally:
@@ -145,6 +146,21 @@ def _content(scene: Scene) -> str:
     return scene_text(copy.deepcopy(dict(written.content)))
 
 
+def _copied_files(scene: Scene, target: Path) -> tuple[Path, ...]:
+    """Copy the files that a scene names in its own folder, such as meshes; return the copies, or folders with them."""
+    written = scene.written
+    if written is None:
+        return ()
+    folder = Path(written.folder or "").resolve()
+    found = [Path(name).resolve() for name in written.files]
+    own = [file.relative_to(folder) for file in found if file.is_file() and file.is_relative_to(folder)]
+    kept = [file for file in own if str(file) not in (SCENE, ABOUT)]  # included scenes are in the text
+    for file in kept:
+        (target / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(folder / file, target / file)
+    return tuple(dict.fromkeys(target / file.parts[0] for file in kept))
+
+
 def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]:
     """Return the variables of the FMU, with their start values."""
     from ... import __version__
@@ -155,7 +171,7 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
             raise InputError("found a scene with stages, expected a scene of one run")
     except InputError as error:
         raise InputError(
-            f"scene within the FMU, without other files of its folder: {str(error).replace(f'{copied.parent}/', '')}"
+            f"scene within the FMU, with files of its own folder only: {str(error).replace(f'{copied.parent}/', '')}"
         ) from None
     inputs = {name: value for name, value in scene.inputs.items() if isinstance(value, float | int)}
     tables = [name for name in scene.inputs if name not in inputs]

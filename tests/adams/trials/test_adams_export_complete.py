@@ -65,6 +65,7 @@ def test_what_would_change_the_motion_is_refused_by_name(more, named):
         ("run: {solver: radau, max_order: 2}", "settings of this package.*run solver, run max_order"),
         ("run: {points: steps}", "settings of this package.*run points"),
         ("requests: {e: energy.total}", "requests e"),
+        ("inputs: {push: 2 N}\nforces: {f: {type: force, i: b, force: [push, 0, 0]}}", "numbers: push"),
     ],
 )
 def test_what_keeps_the_motion_is_noted_by_name(more, note, tmp_path):

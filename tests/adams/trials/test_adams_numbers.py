@@ -99,7 +99,7 @@ def test_a_typing_error_is_no_reason_to_leave_a_statement_out():
 
 @pytest.mark.parametrize(
     ("ending", "words"),
-    [(".cmd", "File > Export > Adams/Solver dataset"), (".CMD", "Adams/Solver dataset"), (".osim", "OpenSim"), (".mbd", "MBDyn")],
+    [(".cmd", "File > Export > Adams/Solver dataset"), (".CMD", "Adams/Solver dataset"), (".osim", "OpenSim"), (".mbd", "MBDyn"), (".stp", "Simscape")],
 )  # fmt: skip
 def test_files_of_other_programs_are_recognised(ending, words, tmp_path):
     with pytest.raises(InputError, match=words):

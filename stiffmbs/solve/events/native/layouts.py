@@ -27,7 +27,7 @@ EVENT_SEARCH = Layout({
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
     "interval_low": FLOATS, "interval_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
-    "n_state": INT, "n_lam": INT, "lam": FLOATS, "by_accelerations": INT, "dynamics": INT_CELL, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS, "radians": FLOATS, "lowest": FLOATS, "highest": FLOATS, "outside": FLOATS, "left": FLOATS, "tables": INTS, "kinked": INTS, "at_kinks": INT_CELL, "n_with_intervals": INT,
+    "n_state": INT, "n_lam": INT, "lam": FLOATS, "by_accelerations": INT, "dynamics": INT_CELL, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS, "radians": FLOATS, "lowest": FLOATS, "highest": FLOATS, "outside": FLOATS, "left": FLOATS, "tables": INTS, "kinked": INTS, "at_kinks": INT_CELL, "n_with_intervals": INT, "n_jumping": INT, "jumping": INTS,
     "begun": FLOAT_CELL, "depth": FLOAT_CELL,
     "least": FLOAT_CELL, "duration": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "first": FLOAT_CELL, "under_way": INT_CELL, "begins": FLOAT_CELL, "narrow": INT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL, "noted": FLOAT_CELL,
 })  # fmt: skip
@@ -35,7 +35,7 @@ EVENT_SEARCH = Layout({
 have to leave (0 for none), the largest values since the start, breakpoints; their values and rates at both ends of the step and of a part of it; the kernel of each, and kernels with a
 function near a breakpoint; states of the step at nodes, of `n_state` numbers and `n_lam` multipliers; 1 if these or algebraic states follow from accelerations, by the dynamics; arguments of sines or of periodic tables with few intervals,
 and their unit in radians; the range of arguments of tables in steps near their ends, the time outside, and that of the
-first departure; tables that end; arguments of tables with a kink; number of functions with breakpoints.
+first departure; tables that end; arguments of tables with a kink; number of functions with breakpoints; arguments that jump by periods of their tables.
 
 Cells: 0 if kinks of tables do not end steps; start of the step, infinite if its values are not known, least depth of an event below zero; shortest
 and longest step for the arguments of sines; longest step until the motion leaves its initial law, longest first step

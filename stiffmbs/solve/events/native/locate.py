@@ -25,7 +25,7 @@ from stiffmbs.solve.events.native.bounds import (
 from stiffmbs.solve.events.native.nearby import note_mean_rates, note_near
 from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import SEARCH
-from stiffmbs.solve.events.native.values import switches, take_reactions
+from stiffmbs.solve.events.native.values import switches, take_reactions, unwrapped
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 
 NONE, FAR = range(2, 4)
@@ -57,7 +57,7 @@ def evaluate_near(w, s, t):
     if w.n_turns > 0:
         return switches(w, s, t)
     take_reactions(w, s, t)
-    return evaluate_some(s, SWITCH, t, w.near)
+    return unwrapped(w, evaluate_some(s, SWITCH, t, w.near))
 
 
 @compiled

@@ -1,5 +1,7 @@
 """Event functions at the current state."""
 
+from math import floor
+
 from stiffmbs.compile.machine.native.access import compiled, ints, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
@@ -25,4 +27,15 @@ def take_reactions(w, s, t):
 def switches(w, s, t):
     """Return the event functions at the current state."""
     take_reactions(w, s, t)
-    return evaluate(s, SWITCH, t)
+    return unwrapped(w, evaluate(s, SWITCH, t))
+
+
+@compiled
+def unwrapped(w, values):
+    """Return values without the jumps of directions by periods of their tables since the start of the step."""
+    for i in range(w.n_jumping):
+        k = w.jumping[i]
+        change = values[k] - w.value_before[k]
+        if abs(change) > 0.5 * w.period[k]:
+            values[k] -= w.period[k] * floor(change / w.period[k] + 0.5)
+    return values

@@ -32,7 +32,7 @@ from stiffmbs.solve.events.native.bounds import (
     turned_arguments,
 )
 from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
-from stiffmbs.solve.events.native.values import switches
+from stiffmbs.solve.events.native.values import switches, unwrapped
 
 INFINITE = float("inf")
 
@@ -76,7 +76,7 @@ def keep_row(w, s, node):
 @compiled
 def _values(w, s, begun, h, place):
     _load_at(w, s, place)
-    return evaluate(s, SWITCH, begun + place * h)
+    return unwrapped(w, evaluate(s, SWITCH, begun + place * h))
 
 
 @compiled

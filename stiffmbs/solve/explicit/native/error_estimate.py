@@ -7,6 +7,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import event_search_view, interval
+from stiffmbs.solve.events.native.values import unwrapped
 from stiffmbs.solve.explicit.native.parameters import CONTROL
 from stiffmbs.solve.explicit.native.stages import add_stages, load_state
 
@@ -59,9 +60,9 @@ def _sees_other_laws(x, h):
         return False
     t = x.t_before + h
     load_state(s, x.y_stage)
-    copied(w.m, evaluate(s, SWITCH, t), w.n)
+    copied(w.m, unwrapped(w, evaluate(s, SWITCH, t)), w.n)
     load_state(s, x.y)
-    at_end = evaluate(s, SWITCH, t)
+    at_end = unwrapped(w, evaluate(s, SWITCH, t))
     others = 0
     for k in range(w.n):
         if interval(w, k, w.m[k]) != interval(w, k, at_end[k]):

@@ -25,7 +25,7 @@ from stiffmbs.solve.events.native.layouts import ALWAYS, EVENT, IN_THIS_STEP, NO
 from stiffmbs.solve.events.native.locate import FAR, evaluate_near, go_on, located, note_rates, note_values
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
-from stiffmbs.solve.events.native.values import switches, take_reactions
+from stiffmbs.solve.events.native.values import switches, take_reactions, unwrapped
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
@@ -72,7 +72,7 @@ def _look_at_middle(c, w, s, ahead):
     """Evaluate functions near breakpoints at a place within the extrapolation by accelerations."""
     go_ahead(c, s, LOOKED_AT * ahead)
     take_reactions(w, s, c.returned + LOOKED_AT * ahead)
-    copied(w.m, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near), w.n)
+    copied(w.m, unwrapped(w, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near)), w.n)
 
 
 @compiled

@@ -11,6 +11,7 @@ from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, ev
 from stiffmbs.solve.events.native.layouts import EVENT, NO_EVENT
 from stiffmbs.solve.events.native.parameters import EPSILON, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, next_row, step_bound_view, whole_steps_view
+from stiffmbs.solve.events.native.values import unwrapped
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
@@ -206,7 +207,7 @@ def _before_event(c, begun):
         ahead *= SEARCH.longer
         call_int(c.interpolate, (c.memory, c.returned - ahead, int32(0), c.at_output))
         load(s, equations_view(c.equations), c.output, array_of(c, c.yp))
-        values = evaluate(s, SWITCH, c.returned - ahead)
+        values = unwrapped(w, evaluate(s, SWITCH, c.returned - ahead))
         changed = 0
         for k in range(w.n):
             changed += w.found[k] != 0 and departed(w, k, values[k])

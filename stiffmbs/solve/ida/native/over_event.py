@@ -18,6 +18,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.events.native.bounds import breakpoint_of, departed, event_search_view, interval, note_changes
 from stiffmbs.solve.events.native.parameters import SEARCH
+from stiffmbs.solve.events.native.values import unwrapped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 
 
@@ -42,7 +43,7 @@ def _crossing(w, k, h, value):
 def _crosses(c, w, s, t):
     """Return True if an event function has changed at the end of an attempted step; note the functions."""
     load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
-    copied(w.value_after, evaluate(s, SWITCH, t), w.n)
+    copied(w.value_after, unwrapped(w, evaluate(s, SWITCH, t)), w.n)
     return note_changes(w, w.value_after) > 0
 
 
