@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, inv, null_space
 
 from ..errors import InputError
-from .finite_elements import PRECISION, FiniteElements, rigid_displacements
+from .finite_elements import DISPLACEMENTS, PRECISION, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order
 from .static_solver import StaticSolver
@@ -44,7 +44,8 @@ class ReducedBody:
     centre: np.ndarray  # shape (3,): centre of mass in the coordinates of the mesh
     inertia: np.ndarray  # shape (3, 3): about the centre of mass, in the axes of the mesh
     frequencies: np.ndarray  # shape (n,): natural frequencies of the free reduced body, Hz, without the six rigid modes
-    modes: np.ndarray  # shape (3 nodes, n): displacements of these modes with unit modal mass
+    # shape (components nodes, n): displacements, in shells also rotations, of these modes with unit modal mass
+    modes: np.ndarray
     rigid_frequencies: np.ndarray  # shape (6,): computed frequencies of the rigid modes, Hz: zero but for rounding
     fixed_frequencies: np.ndarray  # shape (m,): natural frequencies with all interfaces held, Hz
     effective_mass: np.ndarray  # shape (m, 3): effective mass of these along x, y and z, as fraction of the mass
@@ -62,6 +63,17 @@ class ReducedBody:
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
     elements: str  # types of the elements of a mesh, in the words of meshio; empty for matrices
     parts: str  # names of parts of one material to which the file may give several; empty if there are none
+    components: int  # of a node in the modes: three displacements, or six with its rotation
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes."""
+        return len(self.modes) // self.components
+
+    @property
+    def displacements(self) -> np.ndarray:
+        """Displacements of the nodes by the modes, shape (nodes, 3, n)."""
+        return self.modes.reshape(self.nodes, self.components, -1)[:, :DISPLACEMENTS]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -122,9 +134,9 @@ class ReducedBody:
         return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
 
     def energy_under(self, load: np.ndarray, rigid: np.ndarray) -> float:
-        """Return the strain energy by a static load on all nodes, shape (3 nodes,), with all interfaces held, J.
+        """Return the strain energy by a static load on all nodes, shape (components nodes,), with all interfaces held, J.
 
-        `rigid` of shape (3 nodes, 6): rigid motions about the centre of mass.
+        `rigid` of shape (components nodes, 6): rigid motions about the centre of mass.
         """
         of_unit_mass, free, stiffness = self._held(range(len(self.sizes)))
         along = free.T @ np.append(of_unit_mass.T @ (rigid.T @ load), self.modes.T @ load)
@@ -181,7 +193,7 @@ def reduce(
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
         second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
-        model.parts,
+        model.parts, model.components,
     )  # fmt: skip
 
 
@@ -204,7 +216,7 @@ def rigid_body(model: FiniteElements) -> tuple[float, np.ndarray, np.ndarray]:
 
 
 def _coordinates(model: FiniteElements, interfaces: Sequence[Interface], shapes: np.ndarray) -> list[np.ndarray]:
-    return [interface.mean(model) @ shapes[interface.entries] for interface in interfaces]
+    return [interface.mean(model) @ shapes[interface.entries(model)] for interface in interfaces]
 
 
 def _holds(model: FiniteElements, interfaces: Sequence[Interface], rigid: np.ndarray) -> bool:
@@ -223,7 +235,7 @@ def static_solver(
 ) -> tuple[StaticSolver, bool]:
     """Return the static solver of a body, and whether its interfaces hold it; otherwise its mean motion is held, too.
 
-    `rigid` of shape (3 n, 6): rigid motions about the centre of mass. Raises InputError.
+    `rigid` of shape (size, 6): rigid motions about the centre of mass. Raises InputError.
     """
     held, supports = _holds(model, interfaces, rigid), np.empty((len(rigid), 0))
     if not held:
@@ -270,7 +282,8 @@ def _separated(model: FiniteElements, squares: np.ndarray, modes: np.ndarray) ->
 
     Such combinations are determined by rounding otherwise. These are symmetric or antisymmetric if the body is.
     """
-    weights = np.tile(DIRECTIONS, len(modes) // 3)[:, None]
+    of_node = np.append(DIRECTIONS, np.zeros(model.components - DISPLACEMENTS))
+    weights = np.tile(of_node, len(model.nodes))[:, None]
     found, last = modes.copy(), 0
     ends = np.flatnonzero(np.diff(squares, append=np.inf) > SAME_FREQUENCY * squares) + 1
     for end in ends.tolist():
@@ -297,10 +310,11 @@ def _marker_modes(model: FiniteElements, interfaces: Sequence[Interface], modes:
 def _moments(model: FiniteElements, centre: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return first moments, moments with the position, and moments of pairs of modes by their nodes' masses."""
     count, n = len(model.nodes), modes.shape[1]
-    by_mass = (model.mass @ modes).reshape(count, 3, n)
+    by_mass, shapes = (
+        each.reshape(count, model.components, n)[:, :DISPLACEMENTS] for each in (model.mass @ modes, modes)
+    )
     points = model.nodes - centre
-    between = model.mass[::3, ::3]
-    shapes = modes.reshape(count, 3, n)
+    between = model.mass[:: model.components, :: model.components]
     weighted = (between @ shapes.reshape(count, 3 * n)).reshape(count, 3, n)
     return (
         by_mass.sum(axis=0).T,

@@ -47,9 +47,9 @@ def second_order(
     model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, static: np.ndarray, held: bool,
     centre: np.ndarray, modes: np.ndarray,
 ) -> SecondOrder:  # fmt: skip
-    """Return the terms of second order of modes in the mean-axes frame, shape (3 nodes, n).
+    """Return the terms of second order of modes in the mean-axes frame, shape (size, n).
 
-    `static` of shape (3 nodes, coordinates): displacements by unit interface coordinates. `held`: true if held
+    `static` of shape (size, coordinates): displacements by unit interface coordinates. `held`: true if held
     interfaces leave the body no rigid motion. `centre` of shape (3,): centre of mass.
     """
     n = modes.shape[1]
@@ -72,20 +72,20 @@ def second_order(
 def displacement_of_second_order(
     model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, displacement: np.ndarray
 ) -> np.ndarray:
-    """Return the part of second order of a displacement, shape (3 nodes,), with held interfaces."""
+    """Return the part of second order of a displacement, shape (size,), with held interfaces."""
     assert model.solid is not None
     turned = np.zeros(len(displacement))
     for interface in interfaces:
         if interface.size == RIGID_MOTIONS:
-            turn = interface.mean(model)[3:] @ displacement[interface.entries]
+            turn = interface.mean(model)[3:] @ displacement[interface.entries(model)]
             arm = model.nodes[interface.nodes] - interface.point
-            turned[interface.entries] = np.cross(turn, np.cross(turn, arm)).ravel() / 2
+            turned[model.displacements(interface.nodes)] = np.cross(turn, np.cross(turn, arm)).ravel() / 2
     force = model.solid.second_order_force(displacement) + model.stiffness @ turned
     return turned - solver.held_response(force)
 
 
 def _static_shapes(model: FiniteElements, static: np.ndarray, rigid: int) -> np.ndarray:
-    """Return combinations of static displacements with unit strain energies, without rigid motions, shape (3 nodes, r)."""
+    """Return combinations of static displacements with unit strain energies, without rigid motions, shape (size, r)."""
     if static.shape[1] <= rigid:
         return static[:, :0]
     stiffness = static.T @ (model.stiffness @ static)
@@ -102,7 +102,7 @@ class _WorkOfStress:
         assert model.solid is not None
         self._initial_stress = InitialStress(model.solid)
         self._turning = [
-            (each.entries, model.nodes[each.nodes] - each.point, each.mean(model)[3:] @ modes[each.entries])
+            (model.displacements(each.nodes), model.nodes[each.nodes] - each.point, each.mean(model)[3:] @ modes[each.entries(model)])
             for each in interfaces
             if each.size == RIGID_MOTIONS
         ]
@@ -110,7 +110,7 @@ class _WorkOfStress:
     def of(self, displacement: np.ndarray, load: np.ndarray | float = 0.0) -> np.ndarray:
         """Return sigma : grad psi_k^T grad psi_l, and the work at turned interfaces of forces there, shape (n, n).
 
-        The displacement, shape (3 nodes,), causes the stress sigma; its elastic forces and the load act at the interfaces.
+        The displacement, shape (size,), causes the stress sigma; its elastic forces and the load act at the interfaces.
         """
         n = self._modes.shape[1]
         by_nodes = self._initial_stress.matrix(displacement)

@@ -114,8 +114,8 @@ class FlexibleMotion:
 
         `nodes`: all by default. `at`: output times by number. The result: shape (times, nodes, 3).
         """
-        chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
-        entries = (3 * chosen[:, None] + np.arange(3)).ravel()
+        chosen = np.arange(self.reduced.nodes) if nodes is None else self._checked(nodes)
+        entries = (self.reduced.components * chosen[:, None] + np.arange(3)).ravel()
         modal = self.modal[at]
         found = modal @ self.reduced.modes[entries].T
         if self._second_order is not None:
@@ -125,7 +125,7 @@ class FlexibleMotion:
 
     def position(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the positions of nodes in ground axes, m; parameters and shape as `displacement`."""
-        chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
+        chosen = np.arange(self.reduced.nodes) if nodes is None else self._checked(nodes)
         own = self.displacement(nodes, at) + self.model.nodes[chosen] - self.reduced.centre
         turned = np.array([rotated(pose[3:], points) for pose, points in zip(self._frame[at], own, strict=True)])
         return self._frame[at][:, None, :3] + turned.reshape(own.shape)
@@ -177,7 +177,7 @@ class FlexibleMotion:
     def peaks(self) -> dict[str, Peak]:
         """Return the largest von Mises and principal stress and the smallest principal stress, with place and time."""
         found: dict[str, Peak] = {}
-        step = max(1, AT_ONCE // max(1, 6 * len(self.reduced.modes) // 3))
+        step = max(1, AT_ONCE // max(1, 6 * self.reduced.nodes))
         for first in range(0, len(self.t), step):
             stress = self.stress(slice(first, first + step))
             principal = principal_stresses(stress)
@@ -226,7 +226,7 @@ class FlexibleMotion:
         return fields
 
     def _checked(self, nodes: Sequence[int]) -> np.ndarray:
-        chosen, count = np.asarray(nodes, dtype=np.int64), len(self.reduced.modes) // 3
+        chosen, count = np.asarray(nodes, dtype=np.int64), self.reduced.nodes
         if chosen.size and not 0 <= chosen.min() <= chosen.max() < count:
             wrong = chosen.max() if chosen.min() >= 0 else chosen.min()
             raise InputError(f"nodes: found node {wrong}, expected 0 to {count - 1}")

@@ -48,7 +48,7 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
         every[: len(of_modes)] = np.sqrt(reduced.mass) * of_modes
         return {modal: every[3 * k : 3 * k + 3] for k, modal in enumerate(frame.modes)}
 
-    shapes = body.deformation_scale * reduced.modes.T.reshape(-1, len(model.nodes), 3)[:, used]
+    shapes = body.deformation_scale * np.moveaxis(reduced.displacements, -1, 0)[:, used]
     stresses = deviatoric(nodal_stresses(model, reduced.modes)[:, used]) if body.stress_colors else None
     solid = Solid(
         model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=by_coordinates(shapes),
