@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
+from .shell import Shell
 from .solid import Solid
 
 DISPLACEMENTS: Final = 3
@@ -38,6 +39,7 @@ class FiniteElements:
     numbers: np.ndarray | None = None
     parts: str = ""  # names of parts of one material to which the file may give several
     components: int = DISPLACEMENTS  # of a node: three displacements, or six with its rotation vector
+    shell: Shell | None = None  # elements of shells: inertia of rotations
 
     @property
     def size(self) -> int:

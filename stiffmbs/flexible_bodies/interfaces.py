@@ -66,13 +66,14 @@ def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None
         if interface.kind == POINT:
             if len(nodes) > 1:
                 raise InputError(f"interfaces.{name}: found {len(nodes)} nodes, expected one for type: point")
-        else:
+        elif interface.kind == AVERAGE or model.components == DISPLACEMENTS:
             extent = np.linalg.svd(model.nodes[nodes] - model.nodes[nodes].mean(axis=0), compute_uv=False)
             if len(nodes) < 3 or extent[1] <= PRECISION * extent[0]:
                 count = f"{len(nodes)} node{'s' if len(nodes) > 1 else ''}{' on one line' if len(nodes) > 1 else ''}"
+                also = " or type: rigid" if model.components > DISPLACEMENTS else ""
                 raise InputError(
                     f"interfaces.{name}: found {count}, expected three or more that are not on one line, "
-                    "or one with type: point"
+                    f"or one with type: point{also}"
                 )
         for node in nodes.tolist():
             if node in owner:

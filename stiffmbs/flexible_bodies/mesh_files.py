@@ -65,16 +65,16 @@ def _without_sets(lines: Iterable[str]) -> Iterator[str]:
             yield GMSH_SURFACES.sub(lambda found: found[1] + SAME_SURFACE[found[2].upper()], line)
 
 
-def materials_of_sections(path: Path) -> list[str]:
-    """Return the materials that the sections of solids in an Abaqus or Nastran file have, each once."""
+def materials_of_sections(path: Path, what: str) -> list[str]:
+    """Return the materials that the sections of an Abaqus or Nastran file have, each once. `what`: solid or shell."""
     suffix, found = path.suffix.lower(), []
     if suffix == ABAQUS:
         for words in (line.replace(" ", "").upper().split(",") for line in _lines(path)):
-            if words[0] == "*SOLIDSECTION":
+            if words[0] == f"*{what.upper()}SECTION":
                 found += [word.removeprefix("MATERIAL=") for word in words if word.startswith("MATERIAL=")]
     elif suffix in NASTRAN:
         for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-            if line[:6].upper() == "PSOLID":
+            if line[:6].upper() == f"P{what.upper()}":
                 found.append(f"MAT {_fields(line)[2].strip()}")
     return list(dict.fromkeys(found))
 

@@ -316,8 +316,12 @@ def _moments(model: FiniteElements, centre: np.ndarray, modes: np.ndarray) -> tu
     points = model.nodes - centre
     between = model.mass[:: model.components, :: model.components]
     weighted = (between @ shapes.reshape(count, 3 * n)).reshape(count, 3, n)
-    return (
-        by_mass.sum(axis=0).T,
-        np.einsum("ia,ibk->kab", points, by_mass),
-        np.einsum("ial,ibk->lkab", shapes, weighted, optimize=True),
-    )
+    moments = np.einsum("ia,ibk->kab", points, by_mass)
+    pairs = np.einsum("ial,ibk->lkab", shapes, weighted, optimize=True)
+    if model.shell is not None:  # points next to the middle surface move by rotations
+        directors = model.shell.directors
+        turned = (directors.turned @ modes).reshape(len(directors.places), DISPLACEMENTS * n)
+        weighted = (directors.moments @ turned).reshape(-1, DISPLACEMENTS, n)
+        moments += np.einsum("ia,ibk->kab", directors.places, weighted, optimize=True)
+        pairs += np.einsum("ial,ibk->lkab", turned.reshape(-1, DISPLACEMENTS, n), weighted, optimize=True)
+    return by_mass.sum(axis=0).T, moments, pairs

@@ -144,7 +144,7 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
             f"{name:20}{peak['value'] / 1e6:.6g}{bar} MPa at node {peak['node']} ({point} m), {peak['time']:.6g} s"
         )
     if not report["stress"]:
-        lines.append("stress              none: K and M have no shape functions; use a mesh")
+        lines.append("stress              none: only meshes of solids have stresses")
     of_modes = np.array(report["strain_energy"]["by_mode"])
     lines.append(f"{'strain energy':20}{report['strain_energy']['largest']:.6g} J at most")
     for k in np.argsort(of_modes)[::-1][:MOST_FREQUENCIES]:

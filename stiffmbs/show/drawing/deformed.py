@@ -34,8 +34,9 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
     body, folder = frame.source
     model, reduced = body.model(folder), reduced_body(body, folder)
     if body.stress_colors and model.solid is None:
+        found = "described by matrices" if model.shell is None else "of shells"
         raise InputError(
-            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body described by matrices, expected a mesh"
+            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body {found}, expected a mesh of solids"
         )
     faces = surface(model)
     if not faces:
@@ -58,7 +59,12 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
 
 
 def surface(model: FiniteElements) -> list[np.ndarray]:
-    """Return the nodes around each face that belongs to one element only, counterclockwise as seen from outside."""
+    """Return the nodes around each face that belongs to one element only, counterclockwise as seen from outside.
+
+    Faces of shells are their elements, in the order of the file.
+    """
+    if model.shell is not None:
+        return [face for cells in model.cells.values() for face in cells]
     every: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
     for kind, cells in model.cells.items():
         middles = model.nodes[cells].mean(axis=1)
