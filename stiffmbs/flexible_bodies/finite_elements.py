@@ -58,6 +58,21 @@ class FiniteElements:
         """Return the components of all nodes by unit translations and rotations about a point, shape (size, 6)."""
         return rigid_motions(self.nodes - about, self.components)
 
+    def inertial_forces(self, uniform: np.ndarray, gradient: np.ndarray, about: np.ndarray) -> np.ndarray:
+        """Return the products of the mass with fields of acceleration that are linear in space, shape (size, k).
+
+        `uniform`, shape (3, k): accelerations at the point `about`. `gradient`, shape (3, 3, k): by components and axes.
+        """
+        count, k = len(self.nodes), uniform.shape[1]
+        field = np.zeros((count, self.components, k))
+        field[:, :DISPLACEMENTS] = uniform + np.einsum("abk,nb->nak", gradient, self.nodes - about)
+        found = self.mass @ field.reshape(-1, k)
+        if self.shell is not None:  # points next to the middle surface
+            directors = self.shell.directors
+            of_points = np.einsum("abk,nb->nak", gradient, directors.places).reshape(len(directors.places), -1)
+            found += directors.turned.T @ (directors.moments @ of_points).reshape(-1, k)
+        return found  # type: ignore[no-any-return]
+
     def check(self) -> None:
         """Refuse matrices that do not describe one free elastic body. Raises InputError."""
         size = self.size

@@ -17,7 +17,7 @@ from scipy.sparse import bsr_array, csr_array, eye_array, kron
 
 from ..tuning import tuned
 from .materials import ElementMaterials
-from .shell_triangle import Sections, axes_of, strains
+from .shell_triangle import Sections, axes_of, slopes_of, strains
 from .solid import NodePairs
 
 COMPONENTS: Final = 6
@@ -62,6 +62,39 @@ class Directors:
 
 
 @dataclass(frozen=True, eq=False)
+class Triangles:
+    """Some triangles of a shell in their own axes."""
+
+    places: np.ndarray  # of int, shape (triangles, 18): of the components of the nodes among those of the body
+    areas: np.ndarray
+    slopes: np.ndarray  # shape (triangles, 3 corners, 2): of the linear shape functions
+    turned: np.ndarray  # shape (triangles, 3 corners, 6, 6): components of the corners by those of the nodes
+    arms: np.ndarray  # shape (triangles, 3 corners, 3): from the nodes to the corners, m
+    strains: np.ndarray  # shape (triangles, 3 points, 8, 18)
+    sections: Sections
+    weights: np.ndarray  # of each point, m^2
+
+    def components(self, of_body: np.ndarray) -> np.ndarray:
+        """Return the components of the corners in these axes from those of the body, shape (6 n, k), as (triangles, 18, k)."""
+        count = len(self.areas)
+        of_nodes = of_body[self.places].reshape(count, 3, COMPONENTS, -1)
+        return (self.turned @ of_nodes).reshape(count, 3 * COMPONENTS, -1)  # type: ignore[no-any-return]
+
+    def forces(self, local: np.ndarray) -> np.ndarray:
+        """Return forces on the components of the nodes from those on the corners in these axes, both (triangles, 18)."""
+        return np.einsum("tmab,tma->tmb", self.turned, local.reshape(-1, 3, COMPONENTS)).reshape(local.shape)
+
+    def resultants(self, strains: np.ndarray) -> np.ndarray:
+        """Return forces, moments and shear forces times the weights of the points, of strains (triangles, points, 8, ...)."""
+        flat = strains.reshape(*strains.shape[:3], -1) * self.weights[:, None, None, None]
+        found, membrane = np.empty_like(flat), self.sections.membrane()[:, None]
+        found[:, :, :3] = membrane @ flat[:, :, :3]
+        found[:, :, 3:6] = membrane @ flat[:, :, 3:6] * (self.sections.thickness**2 / 12)[:, None, None, None]
+        found[:, :, 6:] = self.sections.shear()[:, None, None, None] * flat[:, :, 6:]
+        return found.reshape(strains.shape)
+
+
+@dataclass(frozen=True, eq=False)
 class Shell:
     """Triangles of isotropic, linearly elastic shells. Each quadrilateral has four of half its thickness in stiffness and mass."""
 
@@ -86,21 +119,26 @@ class Shell:
             self.pairs.add(sums, 0, part, self._of_triangles(part))
         return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts)))
 
-    def _of_triangles(self, part: slice) -> np.ndarray:
-        """Return stiffness matrices of triangles by pairs of corners, shape (triangles, 3, 3, 6, 6)."""
-        axes, places, areas = axes_of(self.places[self.triangles[part]] + self.offsets[part])
+    def part(self, part: slice) -> Triangles:
+        """Return some triangles with their strains."""
+        nodes = self.triangles[part]
+        axes, places, areas = axes_of(self.places[nodes] + self.offsets[part])
         modulus, poisson, _ = (each[part] for each in self.materials)
         sections = Sections(modulus, poisson, self.thickness[part])
-        of_components = strains(places, areas, sections, SHELLS.least_drilling)
-        forces = np.zeros((len(areas), 8, 8))
-        membrane = sections.membrane()
-        forces[:, :3, :3], forces[:, 3:6, 3:6] = membrane, membrane * (sections.thickness**2 / 12)[:, None, None]
-        forces[:, 6, 6] = forces[:, 7, 7] = sections.shear()
-        forces *= (self.shares[part] * areas / 3)[:, None, None]
-        local = np.einsum("tpai,tab,tpbj->tij", of_components, forces, of_components, optimize=True)
-        turned = _turned(axes, self.offsets[part])
+        return Triangles(
+            (COMPONENTS * nodes[:, :, None] + np.arange(COMPONENTS)).reshape(len(nodes), -1), areas, slopes_of(places, areas),
+            _turned(axes, self.offsets[part]), np.einsum("tab,tkb->tka", axes, self.offsets[part]),
+            strains(places, areas, sections, SHELLS.least_drilling), sections, self.shares[part] * areas / 3,
+        )  # fmt: skip
+
+    def _of_triangles(self, part: slice) -> np.ndarray:
+        """Return stiffness matrices of triangles by pairs of corners, shape (triangles, 3, 3, 6, 6)."""
+        found = self.part(part)
+        local = found.strains.transpose(0, 3, 1, 2).reshape(len(found.areas), 3 * COMPONENTS, -1) @ found.resultants(
+            found.strains
+        ).reshape(len(found.areas), -1, 3 * COMPONENTS)
         by_corners = local.reshape(-1, 3, COMPONENTS, 3, COMPONENTS)
-        return np.einsum("tmanb,tmac,tnbd->tmncd", by_corners, turned, turned, optimize=True)  # type: ignore[no-any-return]
+        return np.einsum("tmanb,tmac,tnbd->tmncd", by_corners, found.turned, found.turned, optimize=True)  # type: ignore[no-any-return]
 
     def mass(self) -> csr_array:
         """Return the consistent mass matrix, shape (6 n, 6 n), kg and kg m^2."""

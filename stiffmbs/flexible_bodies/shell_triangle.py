@@ -72,14 +72,14 @@ def strains(places: np.ndarray, areas: np.ndarray, sections: Sections, least_dri
     `least_drilling`: bound of the factor of the stiffness of OPT against drilling rotations, which vanishes at nu = 0.5.
     """
     found = np.zeros((len(places), 3, 8, 3, 6))
-    slopes = _slopes(places, areas)
+    slopes = slopes_of(places, areas)
     factor = np.sqrt(2.25 * np.maximum((1 - 4 * sections.poisson**2) / 2, least_drilling))
     found[:, :, :3][..., [0, 1, 5]] = _membrane(places, areas, factor)
     found[:, :, 3:][..., [2, 3, 4]] = _plate(places, slopes, sections)
     return found.reshape(len(places), 3, 8, 18)
 
 
-def _slopes(places: np.ndarray, areas: np.ndarray) -> np.ndarray:
+def slopes_of(places: np.ndarray, areas: np.ndarray) -> np.ndarray:
     """Return the slopes of the linear shape functions, shape (triangles, 3 corners, 2)."""
     x, y = places[..., 0], places[..., 1]
     following, last = [1, 2, 0], [2, 0, 1]

@@ -126,8 +126,8 @@ class StaticSolver:
         These are the squares of their angular frequencies, 1/s^2, in increasing order, shape (count,), and displacements
         with unit modal mass, kg, shape (size, count). Raises InputError if the model has fewer modes.
         """
-        n = len(self.free)
-        most = n - len(self._functionals)
+        n, mass = len(self.free), self._model.mass[self.free][:, self.free]
+        most = n - len(self._functionals) - self._massless(mass)
         if count > most:
             raise InputError(
                 f"modes: found {count}, expected {most} or fewer: the model has no more with its interfaces held"
@@ -136,13 +136,17 @@ class StaticSolver:
         if count == 0:
             return np.empty(0), found
         LOGGER.info("computing %d normal modes", count)
-        mass = self._model.mass[self.free][:, self.free]
         if n <= max(DENSE, 3 * count):
             squares, shapes = _dense_modes(self._solve(mass.toarray()), mass, count)
         else:
             squares, shapes = _lanczos_modes(self._solve, mass, count)
         found[self.free] = shapes
         return squares, found
+
+
+    def _massless(self, mass: csr_array) -> int:
+        """Return the largest number of rotations without mass: one at each node of a shell."""
+        return 0 if self._model.components == DISPLACEMENTS else mass.shape[0] // self._model.components
 
 
 def _apart(points: np.ndarray) -> np.ndarray:
@@ -155,9 +159,20 @@ def _apart(points: np.ndarray) -> np.ndarray:
 
 
 def _dense_modes(by_mass: np.ndarray, mass: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest modes from the static displacements by the columns of the mass matrix, for small models."""
+    """Return the lowest modes from the static displacements by the columns of the mass matrix, for small models.
+
+    Rotations of shells about their normals have no mass: they follow the motion of all others.
+    """
     work = mass @ by_mass
-    compliances, shapes = eigh((work + work.T) / 2, mass.toarray())
+    work = (work + work.T) / 2
+    values, moving = eigh(mass.toarray())
+    if values[0] > DEPENDENT * values[-1]:
+        compliances, shapes = eigh(work, mass.toarray())
+    else:
+        massive = values > DEPENDENT * values[-1]
+        moving = moving[:, massive] / np.sqrt(values[massive])
+        compliances, shapes = eigh(moving.T @ work @ moving)
+        shapes = by_mass @ (moving @ shapes) / compliances
     highest = np.argsort(compliances)[::-1][:count]
     return 1.0 / compliances[highest], shapes[:, highest]
 

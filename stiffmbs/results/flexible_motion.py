@@ -15,7 +15,7 @@ from ..elements.spatial.flexible.bodies import FloatingFrame
 from ..errors import InputError, needs
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody, static_solver
-from ..flexible_bodies.second_order import displacement_of_second_order
+from ..flexible_bodies.second_order import displacement_of_second_order, stress_of
 from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
 from ..reading.did_you_mean import did_you_mean
 
@@ -107,7 +107,7 @@ class FlexibleMotion:
             return None
         interfaces = body.interfaces_on(model)
         solver, _ = static_solver(model, interfaces, model.rigid_modes(self.reduced.centre))
-        return partial(displacement_of_second_order, model, interfaces, solver)
+        return partial(displacement_of_second_order, model, stress_of(model), interfaces, solver)
 
     def displacement(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
@@ -143,12 +143,12 @@ class FlexibleMotion:
         model, largest = self.model, (0.0, float(self.t[0]))
         rigid = model.rigid_modes(self.reduced.centre)
         solver, _ = static_solver(model, self._source[0].interfaces_on(model), rigid)
-        arms, total = model.nodes - self.reduced.centre, float(self.strain_energy().sum(axis=1).max())
+        total = float(self.strain_energy().sum(axis=1).max())
         for k in {int(np.linalg.norm(self._motion[:, part : part + 3], axis=1).argmax()) for part in (0, 3, 6)}:
             acceleration, w, alpha = self._motion[k].reshape(3, 3)
-            field = rotated(self._frame[k, 3:] * [1, -1, -1, -1], acceleration)
-            field = field + np.cross(alpha, arms) + np.cross(w, np.cross(w, arms))
-            load = -(model.mass @ field.ravel())
+            uniform = rotated(self._frame[k, 3:] * [1, -1, -1, -1], acceleration)
+            gradient = np.cross(alpha, np.eye(3)) + np.cross(w, np.cross(w, np.eye(3)))  # of unit arms, by rows
+            load = -model.inertial_forces(uniform[:, None], gradient.T[:, :, None], self.reduced.centre)[:, 0]
             missing = load @ solver.held_response(load) / 2 - self.reduced.energy_under(load, rigid)
             largest = max(largest, (float(missing / (missing + total or 1.0)), float(self.t[k])))
         return largest
