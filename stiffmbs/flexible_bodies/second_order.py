@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import eigh, null_space
 
 from .finite_elements import FiniteElements
 from .interfaces import Interface
@@ -31,6 +31,8 @@ from .static_solver import StaticSolver
 
 LOGGER = logging.getLogger(__name__)
 RIGID_MOTIONS: Final = 6
+INDEPENDENT: Final = 1e-6
+"""Smallest coordinates of interfaces in a rigid motion, relative to the largest: those of bodies that are held are far above it."""
 Stress = InitialStress | ShellStress
 """Work of the stress of a body on strains of second order."""
 
@@ -64,7 +66,7 @@ def second_order(
     loads = model.inertial_forces(fields[:, 0], fields[:, 1:], centre)
     relaxed = solver.held_response(-loads)
     first, *moments = work.of(relaxed, loads).reshape(4, 3, n, n)
-    shapes = _static_shapes(model, static, RIGID_MOTIONS if held else 0)
+    shapes = _static_shapes(model, interfaces, static, held, centre)
     return SecondOrder(
         first.transpose(1, 2, 0), np.array(moments).transpose(2, 3, 0, 1), modes.T @ (model.mass @ shapes),
         work.of(shapes),
@@ -93,14 +95,22 @@ def stress_of(model: FiniteElements) -> Stress:
     return InitialStress(model.solid)
 
 
-def _static_shapes(model: FiniteElements, static: np.ndarray, rigid: int) -> np.ndarray:
+def _static_shapes(
+    model: FiniteElements, interfaces: Sequence[Interface], static: np.ndarray, held: bool, centre: np.ndarray
+) -> np.ndarray:
     """Return combinations of static displacements with unit strain energies, without rigid motions, shape (size, r)."""
-    if static.shape[1] <= rigid:
-        return static[:, :0]
+    if held:  # rotations are multiplied by the size, so that the coordinates of all motions can be compared
+        size = np.ptp(model.nodes, axis=0).max()
+        scale = np.concatenate([np.repeat([1.0, 1 / size], 3)[: each.size] for each in interfaces])
+        rigid = model.rigid_modes(centre) / np.repeat([1.0, size], 3)
+        moved = np.vstack([each.mean(model) @ rigid[each.entries(model)] for each in interfaces]) / scale[:, None]
+        static = static @ (scale[:, None] * null_space(moved.T, rcond=INDEPENDENT))
+    if not static.shape[1]:
+        return static
     stiffness = static.T @ (model.stiffness @ static)
     scale = 1 / np.sqrt(stiffness.diagonal())
     energies, vectors = eigh(scale[:, None] * stiffness * scale)
-    return static @ (scale[:, None] * vectors[:, rigid:] / np.sqrt(energies[rigid:]))  # type: ignore[no-any-return]
+    return static @ (scale[:, None] * vectors / np.sqrt(energies))  # type: ignore[no-any-return]
 
 
 class _WorkOfStress:

@@ -166,15 +166,15 @@ def _dense_modes(by_mass: np.ndarray, mass: csr_array, count: int) -> tuple[np.n
     work = mass @ by_mass
     work = (work + work.T) / 2
     values, moving = eigh(mass.toarray())
-    if values[0] > DEPENDENT * values[-1]:
+    massive = values > DEPENDENT * values[-1]
+    if massive.all():
         compliances, shapes = eigh(work, mass.toarray())
     else:
-        massive = values > DEPENDENT * values[-1]
         moving = moving[:, massive] / np.sqrt(values[massive])
         compliances, shapes = eigh(moving.T @ work @ moving)
-        shapes = by_mass @ (moving @ shapes) / compliances
     highest = np.argsort(compliances)[::-1][:count]
-    return 1.0 / compliances[highest], shapes[:, highest]
+    compliances, shapes = compliances[highest], shapes[:, highest]
+    return 1.0 / compliances, shapes if massive.all() else by_mass @ (moving @ shapes) / compliances
 
 
 def _lanczos_modes(

@@ -103,7 +103,7 @@ def test_a_reduction_with_all_modes_has_the_frequencies_of_the_mesh(tmp_path, na
     own = K[np.ix_(flexible, flexible)] - K[np.ix_(flexible, rest)] @ np.linalg.solve(K[np.ix_(rest, rest)], K[np.ix_(rest, flexible)])
     expected = np.sqrt(np.abs(eigh(own, M, eigvals_only=True, subset_by_index=[0, 11]))) / (2 * np.pi)
     assert max(found.rigid_frequencies.max(), expected[:6].max()) < 2e-5 * found.frequencies[0]
-    np.testing.assert_allclose(found.frequencies[:6], expected[6:], rtol=2e-5)
+    np.testing.assert_allclose(found.frequencies[:6], expected[6:], rtol=5e-5)
     assert found.nodes == 45 and found.displacements.shape == (45, 3, len(found.frequencies))
 
 
@@ -204,7 +204,7 @@ def test_a_column_under_a_force_at_its_end(folder, part):
         found = modes(model, start_from=equilibrium(model).solution).modes
         return min(mode.natural_frequency for mode in found) ** 2
 
-    assert lowest(part * euler) / lowest(0.0) == pytest.approx(expected, rel=2e-3)
+    assert lowest(part * euler) / lowest(0.0) == pytest.approx(expected, rel=4e-3)
 
 
 SPIN = """gravity: [0, 0, -9.81]
