@@ -19,6 +19,7 @@ from .materials import (
     PHYSICAL,
     SHELLS,
     SOLIDS,
+    ElementMaterials,
     element_groups,
     of_elements,
     parts_of,
@@ -81,23 +82,31 @@ def from_mesh(
     of_kinds = {kind: of_elements(materials, groups[kind], connected[kind]) for kind in kinds}
     of_nodes = _groups(mesh, numbers)
     parts = "" if isinstance(materials, Mapping) else parts_of(path, mesh, list(groups.values()), what)
-    if thickness is not None:
-        check_shells(nodes, cells)
-        thick = {kind: thickness_of_elements(thickness, groups[kind], connected[kind]) for kind in kinds}
-        shell = shell_of(nodes, cells, of_kinds, thick)
-        return FiniteElements(
-            nodes, shell.stiffness(), shell.mass(), of_nodes, cells, parts=parts, components=COMPONENTS, shell=shell
-        )
+    if thickness is None:
+        return _of_solids(nodes, cells, of_kinds, of_nodes, parts)
+    thick = {kind: thickness_of_elements(thickness, groups[kind], connected[kind]) for kind in kinds}
+    check_shells(nodes, cells)
+    shell = shell_of(nodes, cells, of_kinds, thick)
+    return FiniteElements(
+        nodes, shell.stiffness(), shell.mass(), of_nodes, cells, parts=parts, components=COMPONENTS, shell=shell
+    )
+
+
+def _of_solids(
+    nodes: np.ndarray, cells: Mapping[str, np.ndarray], materials: Mapping[str, ElementMaterials],
+    groups: Mapping[str, np.ndarray], parts: str,
+) -> FiniteElements:  # fmt: skip
+    """Return the model of solids; cells and materials by kinds of elements."""
     blocks = []
     for kind, own in cells.items():
         check_volumes(nodes, own, kind)
         check_repeated(own[:, : len(ELEMENTS[kind].shape.corners)])
-        blocks.append(Block(kind, nodes, own.T, of_kinds[kind]))
+        blocks.append(Block(kind, nodes, own.T, materials[kind]))
         check_jacobians(blocks[-1])
     check_shared(cells)
     check_connected(cells)
     solid = Solid(tuple(blocks))
-    return FiniteElements(nodes, solid.stiffness(), solid.mass(), of_nodes, cells, solid, parts=parts)
+    return FiniteElements(nodes, solid.stiffness(), solid.mass(), groups, cells, solid, parts=parts)
 
 
 def _kinds(mesh: meshio.Mesh) -> list[str]:

@@ -25,9 +25,7 @@ def check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
         "enb,nap->epab", nodes[cells[:, : len(shape.corners)]], linear.slopes(linear.nodes.T), optimize=True
     )
     flat = np.linalg.det(edges) <= FLAT * np.linalg.norm(edges, axis=3).prod(axis=2)
-    refuse(
-        flat.any(axis=1), "inverted or flat elements", cells[:, : len(shape.corners)], "elements of positive volume"
-    )
+    refuse(flat.any(axis=1), "inverted or flat elements", cells[:, : len(shape.corners)], "elements of positive volume")
 
 
 def check_repeated(corners: np.ndarray) -> None:

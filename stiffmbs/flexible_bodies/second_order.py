@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.linalg import eigh, null_space
+from scipy.linalg import eigh
 
 from .finite_elements import FiniteElements
 from .interfaces import Interface
@@ -31,8 +31,6 @@ from .static_solver import StaticSolver
 
 LOGGER = logging.getLogger(__name__)
 RIGID_MOTIONS: Final = 6
-INDEPENDENT: Final = 1e-6
-"""Smallest coordinates of interfaces in a rigid motion, relative to the largest: those of bodies that are held are far above it."""
 Stress = InitialStress | ShellStress
 """Work of the stress of a body on strains of second order."""
 
@@ -74,7 +72,11 @@ def second_order(
 
 
 def displacement_of_second_order(
-    model: FiniteElements, stress: Stress, interfaces: Sequence[Interface], solver: StaticSolver, displacement: np.ndarray
+    model: FiniteElements,
+    stress: Stress,
+    interfaces: Sequence[Interface],
+    solver: StaticSolver,
+    displacement: np.ndarray,
 ) -> np.ndarray:
     """Return the part of second order of a displacement, shape (size,), with held interfaces. `stress`: `stress_of` the model."""
     turned = np.zeros(len(displacement))
@@ -104,7 +106,8 @@ def _static_shapes(
         scale = np.concatenate([np.repeat([1.0, 1 / size], 3)[: each.size] for each in interfaces])
         rigid = model.rigid_modes(centre) / np.repeat([1.0, size], 3)
         moved = np.vstack([each.mean(model) @ rigid[each.entries(model)] for each in interfaces]) / scale[:, None]
-        static = static @ (scale[:, None] * null_space(moved.T, rcond=INDEPENDENT))
+        _, _, across = np.linalg.svd(moved.T)
+        static = static @ (scale[:, None] * across[RIGID_MOTIONS:].T)
     if not static.shape[1]:
         return static
     stiffness = static.T @ (model.stiffness @ static)

@@ -26,7 +26,7 @@ TRIANGLE, QUADRILATERAL = "triangle", "quad"
 """Kinds of shells by their names in meshio."""
 DIVISION: Final = {TRIANGLE: ((0, 1, 2),), QUADRILATERAL: ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))}
 """Triangles of each element. Those of a quadrilateral, divided along both diagonals, have half of its stiffness and mass."""
-TOGETHER: Final = 3_000
+TOGETHER = 3_000
 """Triangles whose matrices are computed together; they take 80 MB."""
 
 
@@ -215,7 +215,8 @@ def of_elements(
     times = {kind: len(DIVISION[kind]) for kind in cells}
     properties = zip(*(materials[kind] for kind in cells), strict=True)
     of_triangles = (
-        np.concatenate([np.tile(own, times[kind]) for kind, own in zip(cells, each, strict=True)]) for each in properties
+        np.concatenate([np.tile(own, times[kind]) for kind, own in zip(cells, each, strict=True)])
+        for each in properties
     )
     of_kinds = [np.tile(thickness[kind], times[kind]) for kind in cells]
     return Shell(

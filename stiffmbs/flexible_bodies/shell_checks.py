@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from .mesh_checks import FLAT, check_repeated, refuse
-from .shell import DIVISION, QUADRILATERAL, SHELLS, mean_normals
+from .shell import DIVISION, QUADRILATERAL, SHELLS, TRIANGLE, mean_normals
 
 
 def check_shells(nodes: np.ndarray, cells: Mapping[str, np.ndarray]) -> None:
@@ -23,6 +23,8 @@ def check_shells(nodes: np.ndarray, cells: Mapping[str, np.ndarray]) -> None:
         check_repeated(own)
     if QUADRILATERAL in cells:
         _check_warped(nodes, cells[QUADRILATERAL])
+    if len(cells) > 1:
+        _check_kinds(cells[TRIANGLE], cells[QUADRILATERAL])
     _check_connected(cells)
 
 
@@ -53,6 +55,15 @@ def _check_warped(nodes: np.ndarray, cells: np.ndarray) -> None:
     )  # fmt: skip
 
 
+def _check_kinds(triangles: np.ndarray, quadrilaterals: np.ndarray) -> None:
+    """Refuse triangles between three nodes of a quadrilateral."""
+    halves = np.concatenate([quadrilaterals[:, list(corners)] for corners in DIVISION[QUADRILATERAL]])
+    rows = np.concatenate([np.unique(np.sort(halves, axis=1), axis=0), np.sort(triangles, axis=1)])
+    _, own, count = np.unique(rows, axis=0, return_inverse=True, return_counts=True)
+    on_others = count[own.ravel()][-len(triangles) :] > 1
+    refuse(on_others, "triangles on quadrilaterals", triangles, "each part of the surface once")
+
+
 def _check_connected(cells: Mapping[str, np.ndarray]) -> None:
     """Refuse parts that share no edge of an element."""
     first, rows = 0, []
@@ -67,4 +78,6 @@ def _check_connected(cells: Mapping[str, np.ndarray]) -> None:
     graph = coo_array((np.ones(len(edges)), (edges[:, 2], first + own)), shape=(first + len(own),) * 2)
     parts = len(np.unique(connected_components(graph, directed=False)[1][:first]))
     if parts > 1:
-        raise InputError(f"found {parts} parts of shells that are not connected by edges of elements, expected one body")
+        raise InputError(
+            f"found {parts} parts of shells that are not connected by edges of elements, expected one body"
+        )

@@ -38,7 +38,9 @@ class ShellStress:
         for triangles in self._parts():
             motion = _Motion(triangles, modes)
             for own, displacement in zip(found, displacements.T, strict=True):
-                strain = np.einsum("tpai,ti->tpa", triangles.strains, triangles.components(displacement[:, None])[..., 0])
+                strain = np.einsum(
+                    "tpai,ti->tpa", triangles.strains, triangles.components(displacement[:, None])[..., 0]
+                )
                 own += motion.work(triangles, triangles.resultants(strain))
         return (found + found.swapaxes(1, 2)) / 2  # type: ignore[no-any-return]
 
@@ -72,7 +74,9 @@ class _Motion:
         forces = np.einsum("tpai,tpa->ti", triangles.strains, resultants).reshape(-1, 3, COMPONENTS)
         xx, yy, xy = resultants[:, :, :3].sum(axis=1).T[:, :, None, None]
         (x, y), flat = self.along, (-1, n)
-        found = x.reshape(flat).T @ (xx * x + xy * y).reshape(flat) + y.reshape(flat).T @ (xy * x + yy * y).reshape(flat)
+        found = x.reshape(flat).T @ (xx * x + xy * y).reshape(flat) + y.reshape(flat).T @ (xy * x + yy * y).reshape(
+            flat
+        )
         moments = forces[:, :, 3:]
         total = moments.sum(axis=1)
         across = total[:, 1, None] * turn[:, 0] - total[:, 0, None] * turn[:, 1]  # (moment x normal) . r

@@ -146,7 +146,9 @@ def _membrane(places: np.ndarray, areas: np.ndarray, factor: np.ndarray) -> np.n
     # rotations at the corners, relative to the mean rotation of the displacements
     relative = np.zeros((len(places), 3, 3, 3))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        relative[:, :, i, 0], relative[:, :, i, 1] = (each[:, None] / (4 * areas[:, None]) for each in (x(k, j), y(k, j)))
+        relative[:, :, i, 0], relative[:, :, i, 1] = (
+            each[:, None] / (4 * areas[:, None]) for each in (x(k, j), y(k, j))
+        )
         relative[:, i, i, 2] = 1.0
     lengths, _ = _sides(places)
     by_sides = _from_sides(x, y, lengths, areas)

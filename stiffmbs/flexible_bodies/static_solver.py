@@ -143,7 +143,6 @@ class StaticSolver:
         found[self.free] = shapes
         return squares, found
 
-
     def _massless(self, mass: csr_array) -> int:
         """Return the largest number of rotations without mass: one at each node of a shell."""
         return 0 if self._model.components == DISPLACEMENTS else mass.shape[0] // self._model.components

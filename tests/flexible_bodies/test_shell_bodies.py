@@ -22,8 +22,8 @@ from stiffmbs.flexible_bodies.shell_stress import _Motion
 from stiffmbs.results.flexible_motion import FlexibleMotion
 
 from .bars import face
-from .test_geometric_stiffness import lowest_eigenvalue
 from .shells import KINDS, surface
+from .test_geometric_stiffness import lowest_eigenvalue
 
 LENGTH, WIDTH, THICK = 0.4, 0.1, 4e-3
 ALUMINIUM = Material(E=7e10, nu=0.3, density=2700.0)
@@ -100,7 +100,9 @@ def test_a_reduction_with_all_modes_has_the_frequencies_of_the_mesh(tmp_path, na
     flexible = np.flatnonzero(model.mass.diagonal() > 0)
     rest = np.setdiff1d(np.arange(model.size), flexible)  # rotations about the normal, without mass
     K, M = model.stiffness.toarray(), model.mass.toarray()[np.ix_(flexible, flexible)]
-    own = K[np.ix_(flexible, flexible)] - K[np.ix_(flexible, rest)] @ np.linalg.solve(K[np.ix_(rest, rest)], K[np.ix_(rest, flexible)])
+    own = K[np.ix_(flexible, flexible)] - K[np.ix_(flexible, rest)] @ np.linalg.solve(
+        K[np.ix_(rest, rest)], K[np.ix_(rest, flexible)]
+    )
     expected = np.sqrt(np.abs(eigh(own, M, eigvals_only=True, subset_by_index=[0, 11]))) / (2 * np.pi)
     assert max(found.rigid_frequencies.max(), expected[:6].max()) < 2e-5 * found.frequencies[0]
     np.testing.assert_allclose(found.frequencies[:6], expected[6:], rtol=5e-5)
@@ -236,7 +238,9 @@ def test_free_flight_keeps_energy_and_momentum(folder):
     """A thick plate, so that rotary inertia takes part, with a string between its ends that bends it."""
     bow = "forces:\n  bow: {type: spring_damper, i: {body: plate.a, point: [0, 0, 5 mm]}, j: plate.b, stiffness: 1e6 N/m, free_length: 0.39995}\n"
     rest = f"joints: {{}}\n{bow}run: {{duration: 5 ms, points: 51, rtol: 1e-9, solver: radau}}\n"
-    found = run(scene(folder, "plate", "    thickness: 20 mm\n    omega: [30, 50, 200]\n    velocity: [1, 2, 3]\n", rest))
+    found = run(
+        scene(folder, "plate", "    thickness: 20 mm\n    omega: [30, 50, 200]\n    velocity: [1, 2, 3]\n", rest)
+    )
     total = found["energy.total"]
     assert np.ptp(found["energy.potential"]) > 5e-5 * total[0]
     assert np.ptp(total) < 1e-7 * total[0]

@@ -149,7 +149,12 @@ def test_a_pinched_cylinder(kind, n, error):
     nodes, cells, grid = surface(
         n, n, lambda a, b: (300 * np.sin(np.pi / 2 * b), 300 * a, 300 * np.cos(np.pi / 2 * b)), kind
     )
-    held = [places(grid[0], [1, 3, 5]), places(grid[-1], [0, 2]), places(grid[:, 0], [0, 4, 5]), places(grid[:, -1], [2, 3, 4])]
+    held = [
+        places(grid[0], [1, 3, 5]),
+        places(grid[-1], [0, 2]),
+        places(grid[:, 0], [0, 4, 5]),
+        places(grid[:, -1], [2, 3, 4]),
+    ]
     force = np.zeros(6 * len(nodes))
     force[6 * grid[0, 0] + 2] = -0.25
     found = under(shell(nodes, cells, 3e6, NU, 3.0).stiffness(), np.concatenate(held), force)
