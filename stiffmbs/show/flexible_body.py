@@ -161,7 +161,6 @@ def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:
 
     cells = dict(model.cells) or {"vertex": np.arange(len(model.nodes))[:, None]}
     fields = {
-        f"mode {k + 1}: {frequency:.6g} Hz": body.displacements[..., k]
-        for k, frequency in enumerate(body.frequencies)
+        f"mode {k + 1}: {frequency:.6g} Hz": body.displacements[..., k] for k, frequency in enumerate(body.frequencies)
     }
     meshio.Mesh(model.nodes, list(cells.items()), point_data=fields).write(path)
