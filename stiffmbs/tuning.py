@@ -57,7 +57,6 @@ SUBSYSTEMS = {
     "real_time": "real_time.parameters:REAL_TIME",
     "redundancy": "redundancy.parameters:REDUNDANCY",
     "relaxation": "solve.error_control.relaxation:RELAXATION",
-    "shells": "flexible_bodies.shell:SHELLS",
     "restarts": "solve.events.restart:RESTARTS",
     "run_checks": "run_checks.parameters:RUN_CHECKS",
     "sensitivities": "sensitivity_equations.recorded:SENSITIVITIES",

@@ -6,8 +6,8 @@ import numpy as np
 
 from .finite_elements import FiniteElements
 from .shapes import ELEMENTS, face_rule
-from .shell import DIVISION
-from .shell_triangle import axes_of
+from .shells.shell import DIVISION
+from .shells.triangle import axes_of
 
 
 def nodal_areas(model: FiniteElements, nodes: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
-from .shell import Shell
+from .shells.shell import Shell
 from .solid import Solid
 
 DISPLACEMENTS: Final = 3

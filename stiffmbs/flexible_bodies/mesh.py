@@ -29,9 +29,9 @@ from .materials import (
 from .mesh_checks import check_connected, check_jacobians, check_repeated, check_shared, check_volumes
 from .mesh_files import ABAQUS, GMSH, for_reader, refuse_ignored
 from .shapes import ELEMENTS, TOGETHER
-from .shell import COMPONENTS, DIVISION
-from .shell import of_elements as shell_of
-from .shell_checks import check_shells
+from .shells.checks import check_shells
+from .shells.shell import COMPONENTS, DIVISION
+from .shells.shell import of_elements as shell_of
 from .solid import Block, Solid
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ from scipy.linalg import eigh
 
 from .finite_elements import FiniteElements
 from .interfaces import Interface
-from .shell_stress import ShellStress
+from .shells.stress import ShellStress
 from .solid import InitialStress
 from .static_solver import StaticSolver
 

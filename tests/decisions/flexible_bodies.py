@@ -14,11 +14,11 @@ from stiffmbs.flexible_bodies import (
     mesh_checks,
     reduced,
     reduction,
-    shell,
-    shell_checks,
     solid,
     static_solver,
 )
+from stiffmbs.flexible_bodies.shells import checks as shell_checks
+from stiffmbs.flexible_bodies.shells import shell
 from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -75,7 +75,9 @@ def largest_difference_of_frequencies():
     def are_equal(apart):
         separated = []
         with patch.object(reduction, "eigh", lambda _: separated.append(1) or (None, np.eye(2))):
-            reduction._separated(Record(mass=np.eye(3), components=3, nodes=range(1)), np.array([1.0, 1.0 + apart]), np.eye(3, 2))
+            reduction._separated(
+                Record(mass=np.eye(3), components=3, nodes=range(1)), np.array([1.0, 1.0 + apart]), np.eye(3, 2)
+            )
         return bool(separated)
 
     return count_while(lambda apart: are_equal(1e-11 * apart), DOUBLES)
@@ -102,7 +104,9 @@ def lowest_elastic_frequency():
             _marker_modes=nothing, _moments=lambda *_: (), second_order=nothing, ReducedBody=nothing,
         ):  # fmt: skip
             return refused(
-                lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", components=3), [], 1)
+                lambda: reduction.reduce(
+                    Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", components=3), [], 1
+                )
             )
 
     return count_while(is_refused, DOUBLES[:40])
@@ -172,9 +176,9 @@ def parts_of_a_shell():
 
 
 DECISIONS = {
-    "shells.least_drilling": drilling_without_membrane,
-    "shells.warped": most_warped_quadrilateral,
-    "flexible_bodies.shell:TOGETHER": parts_of_a_shell,
+    "flexible_bodies.shells.shell:LEAST_DRILLING": drilling_without_membrane,
+    "flexible_bodies.shells.shell:WARPED": most_warped_quadrilateral,
+    "flexible_bodies.shells.shell:TOGETHER": parts_of_a_shell,
     "flexible_bodies.cholesky:LARGEST_PART": parts_of_a_chain,
     "flexible_bodies.cholesky:COLUMNS": additions_of_columns,
     "flexible_bodies.finite_elements:SYMMETRY": lambda: count_while(
@@ -203,7 +207,7 @@ DECISIONS = {
     "flexible_bodies.static_solver:DEPENDENT": independent_shapes,
 }  # fmt: skip
 EXPECTED = {
-    "shells.least_drilling": 1 / 90, "shells.warped": 18, "flexible_bodies.shell:TOGETHER": 4,
+    "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:TOGETHER": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,
     "flexible_bodies.reduced:SAME_MASS": 23,

@@ -7,7 +7,7 @@ from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import eigsh, spsolve
 
 from stiffmbs.flexible_bodies.materials import ElementMaterials
-from stiffmbs.flexible_bodies.shell import Shell, of_elements
+from stiffmbs.flexible_bodies.shells.shell import Shell, of_elements
 
 KINDS = "quad", "triangle"
 

@@ -18,7 +18,7 @@ from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.flexible_bodies.reduction import reduce, rigid_body, static_solver
 from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, stress_of
-from stiffmbs.flexible_bodies.shell_stress import _Motion
+from stiffmbs.flexible_bodies.shells.stress import _Motion
 from stiffmbs.results.flexible_motion import FlexibleMotion
 
 from .bars import face

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..errors import InputError
-from .mesh_checks import FLAT, check_repeated, refuse
-from .shell import DIVISION, QUADRILATERAL, SHELLS, TRIANGLE, mean_normals
+from ...errors import InputError
+from ..mesh_checks import FLAT, check_repeated, refuse
+from .shell import DIVISION, QUADRILATERAL, TRIANGLE, WARPED, mean_normals
 
 
 def check_shells(nodes: np.ndarray, cells: Mapping[str, np.ndarray]) -> None:
@@ -50,8 +50,8 @@ def _check_warped(nodes: np.ndarray, cells: np.ndarray) -> None:
         smallest = np.minimum(smallest, cosine)
     refuse(smallest <= 0, "concave or crossed quadrilaterals", cells, "corners in order around a convex one")
     refuse(
-        smallest < np.cos(SHELLS.warped), "warped quadrilaterals", cells,
-        f"corners within {np.degrees(SHELLS.warped):.0f} deg of one plane; divide these into triangles",
+        smallest < np.cos(WARPED), "warped quadrilaterals", cells,
+        f"corners within {np.degrees(WARPED):.0f} deg of one plane; divide these into triangles",
     )  # fmt: skip
 
 

@@ -15,10 +15,9 @@ from typing import Final
 import numpy as np
 from scipy.sparse import bsr_array, csr_array, eye_array, kron
 
-from ..tuning import tuned
-from .materials import ElementMaterials
-from .shell_triangle import Sections, axes_of, slopes_of, strains
-from .solid import NodePairs
+from ..materials import ElementMaterials
+from ..solid import NodePairs
+from .triangle import Sections, axes_of, slopes_of, strains
 
 COMPONENTS: Final = 6
 """Components of a node of a shell: displacements and rotations."""
@@ -26,23 +25,12 @@ TRIANGLE, QUADRILATERAL = "triangle", "quad"
 """Kinds of shells by their names in meshio."""
 DIVISION: Final = {TRIANGLE: ((0, 1, 2),), QUADRILATERAL: ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))}
 """Triangles of each element. Those of a quadrilateral, divided along both diagonals, have half of its stiffness and mass."""
+LEAST_DRILLING = 0.01
+"""Smallest factor beta_0 of the stiffness against drilling rotations: it is (1 - 4 nu^2) / 2, zero at nu = 0.5 (Felippa 2003)."""
+WARPED = 0.5
+"""Largest angle between the normals of the triangles of a quadrilateral and that of its mean plane, rad."""
 TOGETHER = 3_000
 """Triangles whose matrices are computed together; they take 80 MB."""
-
-
-@dataclass(frozen=True)
-class ShellParameters:
-    """Parameters of shells.
-
-    `least_drilling`: smallest factor beta_0 of the stiffness against drilling rotations. It is (1 - 4 nu^2) / 2, which is zero
-    for nu = 0.5 (Felippa 2003). `warped`: largest angle between the normals of a quadrilateral's triangles and their mean, rad.
-    """
-
-    least_drilling: float = 0.01
-    warped: float = 0.5
-
-
-SHELLS = tuned("shells", ShellParameters())
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +116,7 @@ class Shell:
         return Triangles(
             (COMPONENTS * nodes[:, :, None] + np.arange(COMPONENTS)).reshape(len(nodes), -1), areas, slopes_of(places, areas),
             _turned(axes, self.offsets[part]), np.einsum("tab,tkb->tka", axes, self.offsets[part]),
-            strains(places, areas, sections, SHELLS.least_drilling), sections, self.shares[part] * areas / 3,
+            strains(places, areas, sections, LEAST_DRILLING), sections, self.shares[part] * areas / 3,
         )  # fmt: skip
 
     def _of_triangles(self, part: slice) -> np.ndarray:
