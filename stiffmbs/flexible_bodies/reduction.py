@@ -19,6 +19,7 @@ from ..errors import InputError
 from .finite_elements import DISPLACEMENTS, PRECISION, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order
+from .shells.curvature import coarseness
 from .static_solver import StaticSolver
 
 SAME_FREQUENCY = 1e-9
@@ -32,6 +33,8 @@ ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
 FIRST_ORDER = {"tetra": "tetra10", "hexahedron": "hexahedron20", "wedge": "wedge15"}
 """Elements of first order, and those of second order in their place."""
+COARSE = 1.0
+"""Coarseness of shells above which a note tells so: the deflection of a hemisphere is 4 % too small."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
 
@@ -64,6 +67,9 @@ class ReducedBody:
     elements: str  # types of the elements of a mesh, in the words of meshio; empty for matrices
     parts: str  # names of parts of one material to which the file may give several; empty if there are none
     components: int  # of a node in the modes: three displacements, or six with its rotation
+    coarseness: (
+        float  # square of the side of elements over radius and thickness of shells with two curvatures; zero for others
+    )
 
     @property
     def nodes(self) -> int:
@@ -77,7 +83,10 @@ class ReducedBody:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return notes on elements of first order, too stiff in bending (shear locking), and on one material of several parts."""
+        """Return notes on elements that are too stiff in bending, and on one material of several parts.
+
+        Solids of first order are too stiff by shear locking, large flat elements of curved shells by membrane locking.
+        """
         found = []
         better = [FIRST_ORDER[kind] for kind in self.elements.split(", ") if kind in FIRST_ORDER]
         if better:
@@ -89,6 +98,11 @@ class ReducedBody:
             found.append(
                 f"the file of its mesh tells apart {self.parts}, which all have the one material of the description; "
                 "'materials' gives each group of elements its own"
+            )
+        if self.coarseness > COARSE:
+            found.append(
+                f"its mesh has shells with two curvatures and elements of {np.sqrt(self.coarseness):.2g} times the root of radius and "
+                "thickness, which may be too stiff in bending; expected less than 1"
             )
         return tuple(found)
 
@@ -194,6 +208,7 @@ def reduce(
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
         second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
         model.parts, model.components,
+        0.0 if model.shell is None else coarseness(model.shell, model.cells.values()),
     )  # fmt: skip
 
 

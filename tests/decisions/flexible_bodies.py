@@ -18,7 +18,7 @@ from stiffmbs.flexible_bodies import (
     static_solver,
 )
 from stiffmbs.flexible_bodies.shells import checks as shell_checks
-from stiffmbs.flexible_bodies.shells import shell
+from stiffmbs.flexible_bodies.shells import shell, stress
 from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -105,7 +105,7 @@ def lowest_elastic_frequency():
         ):  # fmt: skip
             return refused(
                 lambda: reduction.reduce(
-                    Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", components=3), [], 1
+                    Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", components=3, shell=None), [], 1
                 )
             )
 
@@ -175,7 +175,25 @@ def parts_of_a_shell():
     return len(parts)
 
 
+def most_kept_triangles():
+    def are_kept(count):
+        of = Record(_shell=Record(triangles=range(count)), _kept=True, _computed=lambda: False)
+        return stress.ShellStress.parts(of)
+
+    return count_while(are_kept, (1000 * DOUBLES).astype(int))
+
+
+def coarsest_shell_without_a_note():
+    def is_noted(square):
+        body = Record(coarseness=square, elements="quad", parts="")
+        return bool(reduction.ReducedBody.notes.fget(body))
+
+    return count_while(lambda square: not is_noted(0.1 * square), DOUBLES)
+
+
 DECISIONS = {
+    "flexible_bodies.reduction:COARSE": coarsest_shell_without_a_note,
+    "flexible_bodies.shells.stress:KEPT": most_kept_triangles,
     "flexible_bodies.shells.shell:LEAST_DRILLING": drilling_without_membrane,
     "flexible_bodies.shells.shell:WARPED": most_warped_quadrilateral,
     "flexible_bodies.shells.shell:TOGETHER": parts_of_a_shell,
@@ -207,6 +225,8 @@ DECISIONS = {
     "flexible_bodies.static_solver:DEPENDENT": independent_shapes,
 }  # fmt: skip
 EXPECTED = {
+    "flexible_bodies.reduction:COARSE": 14,
+    "flexible_bodies.shells.stress:KEPT": 20,
     "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:TOGETHER": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,

@@ -1,8 +1,11 @@
 """Flexible bodies of shells: rigid motions, mass, interfaces, geometric stiffening, and runs against solids and beams."""
 
+import json
+
 import meshio
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 from skfem import MeshHex, MeshHex2
@@ -12,6 +15,7 @@ from stiffmbs import load_scene
 from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.linearised.modes import modes
 from stiffmbs.analyses.run import run
+from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.description import FlexibleBody, Material
 from stiffmbs.flexible_bodies.mesh import from_mesh
@@ -20,6 +24,7 @@ from stiffmbs.flexible_bodies.reduction import reduce, rigid_body, static_solver
 from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, stress_of
 from stiffmbs.flexible_bodies.shells.stress import _Motion
 from stiffmbs.results.flexible_motion import FlexibleMotion
+from stiffmbs.show.drawing.deformed import deformed_body
 
 from .bars import face
 from .shells import KINDS, surface
@@ -149,7 +154,7 @@ def test_the_strain_energy_is_that_of_second_order_strains_up_to_the_fourth_orde
     first = body.modes @ q
     second = displacement_of_second_order(model, stress, interfaces, solver, first)
     expected = 0.0
-    for part in stress._parts():
+    for part in stress.parts():
         strain = _Motion(part, first[:, None]).strain(part)
         strain += np.einsum("tpai,ti->tpa", part.strains, part.components((first + second)[:, None])[..., 0])
         expected += (strain * part.resultants(strain)).sum() / 2
@@ -260,3 +265,33 @@ def test_thickness_is_a_parameter_of_the_reduction(folder):
     thin, thick = (reduced_body(FlexibleBody(**described, thickness=t), folder) for t in (1e-3, 2e-3))
     assert thick.mass == pytest.approx(2 * thin.mass, rel=1e-12)
     np.testing.assert_allclose(thick.frequencies / thin.frequencies, 2.0, rtol=2e-3)
+
+
+def test_pictures_show_the_shells(folder):
+    model = scene(folder, "plate", SHELL + "    deformation_scale: 20\n", CLAMP + "run: {duration: 1 ms, points: 2}\n")
+    part = deformed_body("plate.frame", model.bodies["plate.frame"])
+    (solid,) = part.solids
+    assert len(solid.faces) == 64 and len(solid.vertices) == 85
+    colored = scene(folder, "plate", SHELL + "    stress_colors: true\n", CLAMP + "run: {duration: 1 ms, points: 2}\n")
+    with pytest.raises(InputError, match=r"stress_colors: found a body of shells, expected a mesh of solids"):
+        deformed_body("plate.frame", colored.bodies["plate.frame"])
+
+
+def test_commands_report_and_write_a_body_of_shells(folder):
+    (folder / "plate.yaml").write_text(
+        "mesh: plate.vtu\nunits: {length: 1 mm}\nmaterial: {E: 70 GPa, nu: 0.3, density: 2700 kg/m^3}\nthickness: 4 mm\nmodes: 2\n"
+        "interfaces: {root: {plane: {point: [0, 0, 0], normal: [1, 0, 0]}}}\n"
+    )
+    runner, shapes = CliRunner(), folder / "shapes.vtu"
+    found = runner.invoke(main, ["flexible", str(folder / "plate.yaml"), "--hold", "root", "-o", str(shapes), "--json"])
+    assert found.exit_code == 0, found.output
+    report = json.loads(found.stdout)
+    assert (report["nodes"], report["messages"]) == (85, [])
+    assert report["held_frequencies"]["root held"][0] == pytest.approx(20.89, rel=2e-3)
+    written = meshio.read(shapes)
+    assert all(field.shape == (85, 3) for field in written.point_data.values())
+    scene(folder, "plate", SHELL, CLAMP + "run: {duration: 1 ms, points: 2}\n")
+    out = folder / "plate.xdmf"
+    found = runner.invoke(main, ["stresses", str(folder / "scene.yaml"), "plate", "--node", "84", "-o", str(out)])
+    assert found.exit_code == 0, found.output
+    assert "only meshes of solids have stresses" in found.output and "node 84" in found.output

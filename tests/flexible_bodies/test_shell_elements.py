@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from stiffmbs.flexible_bodies.finite_elements import rigid_motions
+from stiffmbs.flexible_bodies.shells.curvature import coarseness
 
 from .published_shells import BEAMS, PROBLEMS, hemisphere, square
 from .shells import KINDS, places, pressure, shell, surface, under
@@ -137,3 +138,20 @@ def test_axes_order_of_nodes_and_side_of_the_normals_change_nothing(kind):
     for matrix, another in ((of.stiffness(), moved.stiffness()), (of.mass(), moved.mass())):
         expected = turn @ matrix.toarray()[np.ix_(by_order, by_order)] @ turn.T
         np.testing.assert_allclose(another.toarray(), expected, atol=1e-10 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_coarse_elements_of_a_surface_with_two_curvatures_are_noted(kind):
+    """h^2 / (R t) of a sphere's zone is known; cylinders and folds have no such curvature."""
+
+    def zone(a, b):
+        polar, azimuth = np.pi / 2 + 0.4 * (b - 0.5), 0.4 * a
+        return np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)
+
+    for n in (4, 8):
+        nodes, cells, _ = surface(n, n, zone, kind)
+        found = coarseness(shell(nodes, cells, E, NU, 0.01), cells.values())
+        assert found == pytest.approx((0.4 / n) ** 2 / 0.01, rel=0.03)
+    for place in (lambda a, b: (np.cos(a), np.sin(a), b), lambda a, b: (a, min(b, 0.5), max(b - 0.5, 0))):
+        nodes, cells, _ = surface(8, 8, place, kind)
+        assert coarseness(shell(nodes, cells, E, NU, 1e-3), cells.values()) < 1e-3

@@ -13,12 +13,15 @@ A rigid rotation causes no strain.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import cached_property
 
 import numpy as np
 
 from .shell import COMPONENTS, TOGETHER, Shell, Triangles
 
+KEPT = 30_000
+"""Triangles of a shell up to which their strains are kept between displacements; they take 150 MB."""
 PLACES = ((0, 0), (1, 1), (0, 1))
 """Directions of the membrane forces xx, yy, xy."""
 
@@ -35,7 +38,7 @@ class ShellStress:
         These are twice the coefficients of products of the coordinates of modes, shape (6 n, m).
         """
         found = np.zeros((displacements.shape[1], modes.shape[1], modes.shape[1]))
-        for triangles in self._parts():
+        for triangles in self.parts():
             motion = _Motion(triangles, modes)
             for own, displacement in zip(found, displacements.T, strict=True):
                 strain = np.einsum(
@@ -47,13 +50,21 @@ class ShellStress:
     def second_order_force(self, displacement: np.ndarray) -> np.ndarray:
         """Return the forces on all components of the strains of second order of a displacement, shape (6 n,)."""
         found = np.zeros(len(displacement))
-        for triangles in self._parts():
+        for triangles in self.parts():
             strain = _Motion(triangles, displacement[:, None]).strain(triangles)
             local = np.einsum("tpai,tpa->ti", triangles.strains, triangles.resultants(strain))
             np.add.at(found, triangles.places, triangles.forces(local))
         return found
 
-    def _parts(self) -> Iterator[Triangles]:
+    def parts(self) -> Iterable[Triangles]:
+        """Return the triangles with their strains, in parts."""
+        return self._kept if len(self._shell.triangles) <= KEPT else self._computed()
+
+    @cached_property
+    def _kept(self) -> tuple[Triangles, ...]:
+        return tuple(self._computed())
+
+    def _computed(self) -> Iterator[Triangles]:
         for start in range(0, len(self._shell.triangles), TOGETHER):
             yield self._shell.part(slice(start, start + TOGETHER))
 
