@@ -113,9 +113,17 @@ def hemisphere(kind, n):
     return found[one, 0] / 0.0940
 
 
-def straight_beam(kind, n, axis):
-    """Return the displacement of a slender cantilever of 6 n elements of length 1 / n: along it, in its plane, out of it."""
-    nodes, cells, grid = surface(6 * n, n, lambda a, b: (6 * a, 0.2 * b, 0), kind)
+def straight_beam(kind, n, axis, inclined=0.0):
+    """Return the displacement of a slender cantilever of 6 n elements of length 1 / n: along it, in its plane, out of it.
+
+    `inclined`: slope of the sides across it, of one sign and the other in turn, so that elements are trapezoids.
+    """
+
+    def place(a, b):
+        row = round(6 * n * a)
+        return 6 * a + (0 < row < 6 * n) * (-1) ** row * inclined * 0.2 * (b - 0.5), 0.2 * b, 0
+
+    nodes, cells, grid = surface(6 * n, n, place, kind)
     force = np.zeros(6 * len(nodes))
     share = np.full(n + 1, 1 / n)
     share[[0, -1]] /= 2

@@ -295,3 +295,16 @@ def test_commands_report_and_write_a_body_of_shells(folder):
     found = runner.invoke(main, ["stresses", str(folder / "scene.yaml"), "plate", "--node", "84", "-o", str(out)])
     assert found.exit_code == 0, found.output
     assert "only meshes of solids have stresses" in found.output and "node 84" in found.output
+
+
+def test_a_coarse_dome_has_a_note(tmp_path):
+    def dome(a, b):
+        x, y = a - 0.5, b - 0.5
+        return x, y, np.sqrt(1 - x**2 - y**2)
+
+    model, grid = plate(tmp_path, place=dome, along=6, across=6)
+    interface = type(face(model, 0.0, "a"))("root", "rigid", grid[0], model.nodes[grid[0]].mean(axis=0))
+    (note,) = reduce(model, [interface], 2).notes
+    assert "shells with two curvatures and elements of 2.7 times the root of radius and thickness" in note
+    model, _ = plate(tmp_path, along=6, across=6)
+    assert reduce(model, [], 2).notes == ()

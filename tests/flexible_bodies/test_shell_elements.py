@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from stiffmbs.flexible_bodies.finite_elements import rigid_motions
 from stiffmbs.flexible_bodies.shells.curvature import coarseness
 
-from .published_shells import BEAMS, PROBLEMS, hemisphere, square
+from .published_shells import BEAMS, PROBLEMS, hemisphere, square, straight_beam
 from .shells import KINDS, places, pressure, shell, surface, under
 
 E, NU, THICK = 1e6, 0.3, 0.02
@@ -114,6 +114,12 @@ TRIANGLES = {"thin twisted beam": (8, 0.9, 0.01), "straight beam, in its plane":
 def test_a_published_value(name, kind):
     n, expected, error = TRIANGLES.get(name, CASES[name]) if kind == "triangle" else CASES[name]
     np.testing.assert_allclose((PROBLEMS | BEAMS)[name](kind, n), expected, rtol=error)
+
+
+@pytest.mark.parametrize(("kind", "expected"), [("quad", 0.258), ("triangle", 0.477)])
+def test_a_single_row_of_trapezoids_is_too_stiff_in_its_plane(kind, expected):
+    """MacNeal and Harder's trapezoids, with sides inclined by 45 deg; elements with displacements alone reach 0.03."""
+    assert straight_beam(kind, 1, 1, inclined=1.0) == pytest.approx(expected, abs=1e-3)
 
 
 @pytest.mark.parametrize(("n", "expected"), [(8, 0.49), (16, 0.93), (32, 0.99)])
