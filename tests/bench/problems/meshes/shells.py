@@ -11,7 +11,7 @@ import numpy as np
 from tests.flexible_bodies.published_shells import BEAMS, PROBLEMS
 from tests.flexible_bodies.shells import KINDS
 
-from .benchmark import Row
+from ...benchmark import Row
 
 DIVISIONS = {"plate or shell": (4, 8, 16, 32), "beam": (1, 2, 4, 8)}
 """Elements on each side, or across a beam."""
@@ -40,3 +40,6 @@ def _rows(most: int) -> Iterator[Row]:
                     begun = time.process_time()
                     error = float(np.abs(np.asarray(ratio(kind, n)) - 1).max())
                     yield Row(name, f"{n} {kind}s", error, time.process_time() - begun, False)
+
+
+BENCHMARKS = (Shells("shells"),)
