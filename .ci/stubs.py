@@ -17,9 +17,9 @@ from pydantic_core import PydanticUndefined
 
 import stiffmbs
 from stiffmbs.elements.element import Element
+from stiffmbs.elements.geometry import OneFor
 from stiffmbs.elements.roads.envelope import Envelope
 from stiffmbs.elements.roads.road import Road
-from stiffmbs.elements.shape import OneFor
 from stiffmbs.elements.spatial.marker import Placement as SpatialPlacement
 from stiffmbs.elements.spatial.orientation import OrientationField
 from stiffmbs.elements.states.amount import Amount

@@ -14,7 +14,7 @@ Examples
 ...         return [(e.force, e.i.point[0])]
 """
 
-from .elements.forces.friction import Loads
+from .elements.loads import Loads
 from .reading.formula.field import (
     ForceOfDeflection,
     ForceOfMotion,

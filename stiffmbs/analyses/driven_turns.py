@@ -14,8 +14,6 @@ from typing import Any, TypeVar
 from ..compile.compile_model import compile_model
 from ..compile.state import State
 from ..compile.system import System
-from ..elements.joints.drive import Drive
-from ..elements.joints.relation import OffsetConstraint
 from ..elements.turns import TURN, full_turns
 from ..model.current_pose import CurrentPose, read_by
 from ..model.model_data import ModelData
@@ -136,8 +134,13 @@ def note_on_turns(turns: Mapping[str, int]) -> Note:
 
 def _drives(data: ModelData) -> dict[str, str]:
     """Return the joints whose angles are prescribed, by the names of their drives."""
+    relations = {name: joint for name, joint in data.joints.items() if next(joint.parts(JointName), None)}
+    if not relations:
+        return {}
+    from ..elements.joints.drive import Drive
+
     found = {}
-    for name, drive in data.joints.items():
+    for name, drive in relations.items():
         if isinstance(drive, Drive) and drive.joint is not None and drive.prescribed_position is not None:
             joint = drive.joint.joint
             if drive.joint.coordinate_of(data.joints[joint]) == "angle":
@@ -146,4 +149,6 @@ def _drives(data: ModelData) -> dict[str, str]:
 
 
 def _open_offset(joint: object) -> bool:
+    from ..elements.joints.relation import OffsetConstraint
+
     return isinstance(joint, OffsetConstraint) and joint.offset is None

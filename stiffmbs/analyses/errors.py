@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from ..notes import Note, NoteKind, Severity
 from ..results.error_bars import ErrorEstimate
 from ..solve.sampling import restarts
 from ..solve.settings import changed, misses_breakpoints, traits_of
-from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
+from ..solve.trajectory import SAME_TIME, Outcome, ProgressCallback, Recording, Trajectory
 from ..tuning import in_use
 
 if TYPE_CHECKING:
@@ -101,23 +101,26 @@ def _work(job: Job, trajectory: Trajectory) -> float:
 def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
     """Return the results with errors from a run at a smaller tolerance, or at a larger one if there is none, or with half the step.
 
-    Where breakpoints or samples limit the steps, both runs may take the same ones; another run then takes smaller ones.
+    Where breakpoints or samples limit the steps, both runs may take the same ones, whose errors do not differ; another run then
+    takes smaller ones.
     """
     from ..error_estimate.estimate import with_bars
     from ..results.error_bars import bars_by_difference
-    from ..solve.explicit.dop853 import DOP853
     from .run import finished
 
-    steps, grid = _steps(trajectory), job.grid
+    grid, longest = job.grid, 0.0
     breakpoints = restarts(job.dynamics, grid)
     times, at = _with_steps(solution, trajectory, breakpoints)
-    for settings, part, how in _of_second_runs(job.settings, trajectory):
+    for repeats in range(1, MOST_REPEATS + 1):
+        settings, part, how, last = _second_run(job.settings, trajectory, repeats, longest)
         try:
             other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=Recording(), times=times)))
         except StiffmbsError as error:
             return _without(solution, f"not estimated: a run {how} failed: {error}; use --verify")
-        if _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
+        shared = _shared(trajectory, other.trajectory)
+        if last or _takes_other_steps(trajectory, other.trajectory, part, shared):
             break
+        longest = float((shared if len(shared) else _lengths(trajectory)).max(initial=0.0))
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run {how} ended early; use --verify")
     close = ESTIMATE.close if grid.times is None else 0.0  # own steps may lie just before and after an event
@@ -127,19 +130,42 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     return with_bars(replace(solution, errors=found), job.settings, job.dynamics, trajectory)
 
 
-def _of_second_runs(settings: RunSettings, trajectory: Trajectory) -> Iterator[tuple[RunSettings, float, str]]:
-    """Yield the settings of second runs, the expected part of their errors in those of the first run, and how they are run."""
+def _second_run(
+    settings: RunSettings, trajectory: Trajectory, repeats: int, longest: float
+) -> tuple[RunSettings, float, str, bool]:
+    """Return the settings of a second run, its errors in those of the first one, how it is run, and True if it is the last.
+
+    `repeats`: number of the run, from 1. `longest`: step of the first run to reduce, s, or 0.
+    """
     if order := traits_of(settings).order:
         taken = float(np.ptp(trajectory.t)) / _steps(trajectory)  # reduced to divide output intervals
-        yield changed(settings, {"step": 0.5 * taken}), 0.5**order, "with half the step"
-        return
-    part, ends = _part_of_second(settings.rtol), np.append(trajectory.t[0], trajectory.step_times)
-    longest = float(np.diff(ends).max(initial=0.0))
-    for repeats in range(1, MOST_REPEATS + 1):
-        found = _with_errors(settings, part**repeats, longest if repeats > 1 else 0.0)
-        yield found, part, f"at rtol {found.rtol:.0e}"
-        if part > 1.0 or part * found.rtol < ESTIMATE.smallest_rtol:
-            return
+        return changed(settings, {"step": 0.5 * taken}), 0.5**order, "with half the step", True
+    part = _part_of_second(settings.rtol)
+    found = _with_errors(settings, part**repeats, longest)
+    last = repeats == MOST_REPEATS or part > 1.0 or part * found.rtol < ESTIMATE.smallest_rtol
+    return found, part, f"at rtol {found.rtol:.0e}", last
+
+
+def _takes_other_steps(trajectory: Trajectory, other: Trajectory, part: float, shared: np.ndarray) -> bool:
+    """Return True if the errors of another run are other ones than those of a run; `shared`: lengths of the steps of both, s."""
+    from ..solve.explicit.dop853 import DOP853
+
+    more = _steps(other) > _steps(trajectory) * part ** (-0.5 / DOP853.order)
+    return more and bool(shared.sum() <= ESTIMATE.shared * _lengths(trajectory).sum())
+
+
+def _lengths(trajectory: Trajectory) -> np.ndarray:
+    """Return the lengths of the steps of a run, s."""
+    return np.diff(trajectory.step_times, prepend=trajectory.t[0])
+
+
+def _shared(trajectory: Trajectory, other: Trajectory) -> np.ndarray:
+    """Return the lengths of the steps of a run that another one takes too, s, up to rounding."""
+    ends, others = (np.append(each.t[0], each.step_times) for each in (trajectory, other))
+    rounding = SAME_TIME * np.ptp(ends)
+    at = np.minimum(np.searchsorted(others, ends - rounding), len(others) - 1)
+    same = np.abs(others[at] - ends) <= rounding
+    return _lengths(trajectory)[same[:-1] & same[1:] & (np.diff(at) == 1)]
 
 
 def _part_of_second(rtol: float) -> float:

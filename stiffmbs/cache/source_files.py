@@ -47,5 +47,5 @@ def modules_within(package: Path, folder: str) -> Iterator[Path]:
     """Yield the modules in all folders of a name within a package, and in their subfolders, sorted by name."""
     for place, folders, names in os.walk(package):
         folders[:] = sorted(set(folders) - {NOT_READ})
-        if folder in Path(place).relative_to(package).parts:
+        if folder in place[len(str(package)) :].split(os.sep):
             yield from (Path(place, name) for name in sorted(names) if name.endswith(PYTHON))

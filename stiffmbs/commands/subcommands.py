@@ -70,7 +70,7 @@ def _tell_more(context: click.Context, _: click.Parameter, count: int) -> None:
 
 
 class Subcommands(Process):
-    """A group whose commands have a file each: a run need not load what draws or fits.
+    """A group whose commands are in several files: a run need not load what draws or fits.
 
     `sections`: the module of each command in `stiffmbs.commands`, by section of the help.  After a colon the name of
     the command in the module, if it differs.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import platform
-from importlib.metadata import PackageNotFoundError, version
 
 PACKAGES = ("stiffmbs", "numpy", "scipy", "numba", "scikit-sundae", "exudyn", "casadi")
 
@@ -36,6 +35,8 @@ def _processor() -> str:
 
 def installed(package: str) -> str | None:
     """Return the version of an installed package, or None."""
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return version(package)
     except PackageNotFoundError:

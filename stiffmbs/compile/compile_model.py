@@ -10,10 +10,10 @@ import numpy as np
 
 from ..elements.body import body_numbers
 from ..elements.element import Element
-from ..elements.states.equation import Reported
 from ..elements.turns import INITIAL_COUNT
 from ..errors import InputError
 from ..model.model_builder import ModelBuilder
+from ..reading.formula.formula import Formula
 from ..reading.formula.text import FormulaError
 from ..reading.marker import GROUND, PlacedMarkers
 from .bodies import BODY_KINDS, BodyKind
@@ -78,16 +78,19 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         holonomic=np.array(holonomic, dtype=bool),
         active=np.ones(len(equations), dtype=bool),
         size=size,
-        outputs={
-            name: element.formula
-            for members in sorted_elements.values()
-            for name, element, _ in members
-            if isinstance(element, Reported)
-        },
+        outputs=_outputs(sorted_elements) if model.state_outputs() else {},
     )
     if system.sampled.any():
         _refuse_jumps_of_positions(system)
     return system
+
+
+def _outputs(sorted_elements: Mapping[Kind, list[_Member]]) -> dict[str, Formula]:
+    """Return the reported formulas by name."""
+    from ..elements.states.equation import Reported
+
+    elements = (member for members in sorted_elements.values() for member in members)
+    return {name: element.formula for name, element, _ in elements if isinstance(element, Reported)}
 
 
 def _refuse_jumps_of_positions(system: System) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..elements.element import Component, Element, Force, Joint
 from ..elements.states.entry import StateValue
-from ..elements.states.equation import StateName, own_state
+from ..elements.states.state_name import StateName, own_state
 from ..errors import InputError
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import JointName

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
+from typing import TYPE_CHECKING, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -73,8 +73,7 @@ class OutputRows:
 
     def at(self, instants: np.ndarray | slice) -> OutputRows:
         """Return the rows of some output times, by number."""
-        found: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
-        return replace(self, **{name: each[instants] for name, each in found.items() if name != "status"})
+        return OutputRows(**{name: each if name == "status" else each[instants] for name, each in vars(self).items()})
 
     @property
     def finite(self) -> bool:

@@ -12,7 +12,6 @@ from ..compile.formula_shape import Shape
 from ..compile.group import Group
 from ..compile.system import System
 from ..elements.element import Element, Joint
-from ..elements.joints.drive import Drive
 from ..elements.requests.output import CONTINUOUS_ANGLES
 from ..elements.turns import INITIAL_COUNT, TURN
 from ..reading.formula.formula import Formula
@@ -38,6 +37,12 @@ class CountedAngle:
     driven: bool
 
 
+def _is_driven(group: Group) -> bool:
+    from ..elements.joints.drive import Drive
+
+    return issubclass(group.kind.element, Drive)
+
+
 def counted_angles(system: System) -> Iterator[CountedAngle]:
     """Yield the angles whose turns are counted, by element."""
     joint_at = {
@@ -55,7 +60,7 @@ def counted_angles(system: System) -> Iterator[CountedAngle]:
             for k, (of, place) in enumerate(zip(group.record.counted, places, strict=True)):
                 measure = "" if of else next(measures, "")
                 channel = f"{joint_at[index[first + of[0]]]}.{of[1]}" if of else _own_angle(group, name)
-                constrained, driven = group.record.n_holonomic > 0, issubclass(group.kind.element, Drive)
+                constrained, driven = group.record.n_holonomic > 0, _is_driven(group)
                 yield CountedAngle(int(place), name, k, channel, measure, constrained, driven)
 
 

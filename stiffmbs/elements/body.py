@@ -17,7 +17,7 @@ from ..reading.formula.names import PLANE
 from ..reading.handle import Handle
 from ..reading.marker import Marker, Placement
 from ..reading.units import si
-from .shape import PlanarGeometry
+from .geometry import PlanarGeometry
 
 if TYPE_CHECKING:
     from .spatial.body import Body as SpatialBody

@@ -25,8 +25,8 @@ from ..reading.marker import MarkerReference
 
 if TYPE_CHECKING:
     from ..model.model_data import ModelData
-    from .forces.friction import Loads
     from .initial_pose import InitialPose
+    from .loads import Loads
 
 Part = TypeVar("Part")
 Symbolic = Any
@@ -261,7 +261,13 @@ class Joint(Element):
         """Name the channels of a new kind's free coordinates."""
         super().__pydantic_init_subclass__(**options)
         if cls.free_coordinates():
-            cls.channels = joint_channels(cls.free_coordinates())
+            channels = joint_channels(cls.free_coordinates())
+            if not set(own := cls.__dict__.get("channels", ())) <= set(channels):
+                raise InputError(
+                    f"{cls.__name__}: found channels {', '.join(own)} of a joint with coordinates, expected none: its channels are those of "
+                    "the coordinates; a further_coordinate reports a value of its own"
+                )
+            cls.channels = channels
 
     @classmethod
     def free_coordinates(cls) -> tuple[str, ...]:

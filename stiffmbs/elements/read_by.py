@@ -40,6 +40,13 @@ class ReadBy:
         return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
 
 
+def of_class(kind: Callable[[], type[BaseModel]]) -> ReadBy:
+    """Return the marker of a field that takes entries of a class, which is imported where an entry is read."""
+    return ReadBy(
+        lambda found, context: kind().model_validate(found, context=context), lambda schema_of: schema_of(kind())
+    )
+
+
 def class_of(
     found: object, kinds: Mapping[str, Any], expected: str = "a mapping of keys to values", more: str = ""
 ) -> Any:

@@ -6,14 +6,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field, ValidationInfo, field_validator
 
 from ..reading.fields import Described
 from ..reading.files.files_read import digest_of_file, file_beside
 from ..reading.files.quoted import quoted, written
 from ..reading.units import si
-from .read_by import Context, ReadBy, class_of
+from .geometry import OneFor
 
 if TYPE_CHECKING:
     from ..model.parts.frame import Frame
@@ -53,24 +52,6 @@ class PolylineShape(Shape):
         return self.model_copy(update={"points": tuple(frame.to_outside(point) for point in self.points)})
 
 
-class OneFor:
-    """Marker of a list field that also accepts a single entry, which is repeated to the length of the list, or once."""
-
-    def __init__(self, times: int | None = None) -> None:
-        self.times = times
-
-    def listed(self, found: object) -> object:
-        """Return an entry of a scene as a list."""
-        return found if isinstance(found, list | tuple) else (found,) * (self.times or 1)
-
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.listed, handler(source))
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, object]:
-        several = handler(schema)
-        return {"anyOf": [several, several["items"] if "items" in several else several["prefixItems"][0]]}
-
-
 Scale = Annotated[tuple[si.NumberNotZero, si.NumberNotZero, si.NumberNotZero], OneFor(3)]
 
 
@@ -98,27 +79,6 @@ class MeshShape(Shape):
         signs = (*frame.signs, 1.0)[:3]
         scale = tuple(a * b for a, b in zip(self.scale, signs, strict=True))
         return frame.placed(self).model_copy(update={"scale": scale})
-
-
-def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
-    """Return the marker of a field that takes one of some entries, selected by its ``type``.
-
-    `expected`: example for messages.
-    """
-    by_name = {kind.model_fields["type"].default: kind for kind in kinds}
-
-    def read(found: object, context: Context) -> object:
-        """Return the entry validated by the class that its type selects."""
-        if isinstance(found, kinds):
-            return found
-        return class_of(found, by_name, expected).model_validate(found, context=context)
-
-    return ReadBy(read, lambda schema_of: {"oneOf": [schema_of(kind) for kind in kinds]})
-
-
-def one_of_shapes(*shapes: type[Shape]) -> ReadBy:
-    """Return the marker of a field that takes a shape."""
-    return one_of("a shape such as {type: sphere, radius: 10 mm}", *shapes)
 
 
 Point = si.Point2
@@ -163,5 +123,3 @@ class Mesh(MeshShape, Placed):
 
 
 SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
-PlanarGeometry = Annotated[tuple[Annotated[Any, one_of_shapes(*SHAPES)], ...], OneFor()]
-"""Shapes of a body; a single one needs no list."""

@@ -18,7 +18,7 @@ from .defects import Points, curve_of_bdf, nodes_of_bdf, nonlinear_defects, wove
 from .evaluated import Evaluated, evaluated, motion
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .parameters import ESTIMATE
-from .restarts import after_restart, beyond_event, is_autonomous, just_before
+from .restarts import after_restart, autonomous, beyond_event, just_before
 from .singular_poses import refuse_singular
 from .transport import OF_BDF, Transport
 from .vibrations import FastMotions, excited_at_start
@@ -64,6 +64,7 @@ class _Prepared:
     - `points` of shape (steps, points, 2 + 2 unknowns): `Transport.rows` of states; the last point of each step is its end.
     - `defects` of shape (steps, points, full): at these points.
     - `at_rows` of shape (rows, full): defects at the recorded rows, zero at the start.
+    - `typical` of shape (full,): sizes of changes that are large.
     """
 
     piece: Piece
@@ -72,6 +73,7 @@ class _Prepared:
     points: np.ndarray
     defects: np.ndarray
     at_rows: np.ndarray
+    typical: np.ndarray
 
     @property
     def sizes(self) -> np.ndarray:
@@ -93,6 +95,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
     states = evaluated(dynamics, t, q, u, (steps, rtol))
     fired = np.array([bool(piece.fired) for piece in pieces])
+    alike = autonomous(dynamics, states) if fired.any() else fired
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
     left_out[starts[1:]] = True
@@ -107,9 +110,10 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     error, shift = np.zeros(width(dynamics.system)), 0.0
     for k, piece in enumerate(pieces):
         opened = k > 0 and bool(pieces[k - 1].fired)
-        each = _prepared(dynamics, transport, piece, states.at(slice(starts[k], starts[k + 1])), opened, rtol)
+        own = slice(starts[k], starts[k + 1])
+        each = _prepared(dynamics, transport, piece, states.at(own), opened, rtol)
         if k:
-            error, shift = _restarted(dynamics, prepared[-1], each, error, shift)
+            error, shift = _restarted(dynamics, prepared[-1], each, error, shift, bool(alike[own].all()))
         errors, slopes = _transported(transport, each, error)
         error = errors[-1]
         prepared.append(each)
@@ -118,12 +122,16 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     lost = _are_lost(dynamics.system, q, errors)
     if lost.any():
         return StateErrors(t, q, u, states.rows, q, u, errors, left_out, lost, restarts)
-    better = [
-        closed(dynamics, transport, each.states, *errors_and_slopes, each.at_rows, float(each.sizes.max()))
-        for each, errors_and_slopes in zip(prepared, of_pieces, strict=True)
-    ]
+    slopes, at_rows = (
+        np.concatenate([each for _, each in of_pieces]),
+        np.concatenate([each.at_rows for each in prepared]),
+    )
+    of_piece = np.repeat(np.arange(len(pieces)), np.diff(starts))
+    longest, large = np.array([each.sizes.max() for each in prepared]), np.array([each.typical for each in prepared])
+    q_better, u_better, fails, is_open = closed(
+        dynamics, transport, states, errors, slopes, at_rows, longest[of_piece], large[of_piece]
+    )
     fast = excited_at_start(dynamics, states.at(slice(starts[1])), pieces[0].points)
-    q_better, u_better, fails, is_open = (np.concatenate(parts) for parts in zip(*better, strict=True))
     kept = ~(is_open & np.concatenate([each.between for each in prepared]))
     starts = np.append(0, np.cumsum(kept))[starts]
     t, q, u, errors, q_better, u_better = (each[kept] for each in (t, q, u, errors, q_better, u_better))
@@ -197,7 +205,7 @@ def _prepared(
         exact = np.hstack([states.q_rates[middles], states.acceleration[middles]])
         at_rows[middles] = points.changes(curve.slopes(MIDDLE)[pairs, 0] - exact)
         at_rows[middles[~smooth[pairs] | np.isnan(defects[pairs, -1]).any(axis=1)]] = np.nan
-    return _Prepared(piece, states, ends, of_points, means, at_rows)
+    return _Prepared(piece, states, ends, of_points, means, at_rows, points.typical)
 
 
 def _away_from_events(t: np.ndarray, piece: Piece, opened: bool) -> np.ndarray:
@@ -315,9 +323,11 @@ def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tu
 
 
 def _restarted(
-    dynamics: Dynamics, before: _Prepared, after: _Prepared, error: np.ndarray, shift: float
+    dynamics: Dynamics, before: _Prepared, after: _Prepared, error: np.ndarray, shift: float, is_autonomous: bool
 ) -> tuple[np.ndarray, float]:
     """Return the error at the start of a piece and a shift of its time, s, from those at the end of the one before it.
+
+    `is_autonomous`: True if the rates of its states do not depend on time itself.
 
     After an event without influences of time the motion is the same, only later or earlier: z' times that shift, which a
     numerical transport through stiff contacts would turn into errors of energy.
@@ -330,6 +340,6 @@ def _restarted(
     on_left = just_before(dynamics, before.states, before.piece.fired)
     error, late = after_restart(dynamics, last, first, before.piece.fired, error, on_left)
     shift -= late
-    if is_autonomous(dynamics, after.states):
+    if is_autonomous:
         return error, shift
     return error + shift * motion(system, first)[0], 0.0

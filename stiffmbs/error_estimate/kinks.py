@@ -16,8 +16,14 @@ from numpy.polynomial.legendre import legder, leggauss, legval, legvander
 from ..solve.radau.collocation import Collocation, radau
 from .parameters import ESTIMATE
 
+ENDS = np.array([-1.0, 1.0])
+"""Ends of the interval of Legendre polynomials."""
 GAUSS_NODES, GAUSS_WEIGHTS = (0.5 * (leggauss(3)[0] + 1.0), 0.5 * leggauss(3)[1])
 """Gauss quadrature of order 6 on the interval from 0 to 1."""
+_OF_ENDS = np.linalg.inv(
+    np.vstack([legvander(ENDS, 3), np.transpose([legval(ENDS, legder(row)) for row in np.eye(4)])])
+)
+"""Legendre coefficients of a cubic by its values and slopes at -1 and 1."""
 Motion = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 """Rates z' as rows (dq, du, ds) from t, q and u of many states."""
 
@@ -45,10 +51,7 @@ class Curve:
         """Return the cubic polynomials by the states and rates at both ends of steps, shape (steps, 2, n)."""
         size = t[:, 1] - t[:, 0]
         slopes = 0.5 * size[:, None, None] * rates
-        values = [legval([-1.0, 1.0], row) for row in np.eye(4)]
-        derivatives = [legval([-1.0, 1.0], legder(row)) for row in np.eye(4)]
-        matrix = np.vstack([np.transpose(values), np.transpose(derivatives)])
-        return cls(t[:, 0], size, np.linalg.solve(matrix, np.concatenate([states, slopes], axis=1)))
+        return cls(t[:, 0], size, _OF_ENDS @ np.concatenate([states, slopes], axis=1))
 
     def at(self, places: np.ndarray, of_step: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return times and states at places, shape (n, m), from 0 to 1 within the steps `of_step`, one in each row."""

@@ -49,6 +49,8 @@ class EstimateParameters:
     second: float = 0.1
     """Tolerance of the second run by which the errors of explicit steps are estimated, in that of the run. It takes a third more
     steps; its own errors, about as small a part, are in the estimate. Beyond `smallest_rtol` the inverse."""
+    shared: float = 0.05
+    """Part of the run in steps that the second run takes too, above which another one takes shorter steps there."""
     large: float = 0.01
     """Error of any channel relative to its size above which a note appears."""
     part: float = 1e-2

@@ -38,13 +38,13 @@ def after_restart(
     return moved, late
 
 
-def is_autonomous(dynamics: Dynamics, at: Evaluated) -> bool:
-    """Return True if the rates of some states do not depend on time itself."""
+def autonomous(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
+    """Return a mask of the states whose rates do not depend on time itself."""
     shift = ESTIMATE.difference * np.maximum(1.0, np.abs(at.t))
     later = evaluated(dynamics, at.t + shift, at.q, at.u)
     now = evaluated(dynamics, at.t, at.q, at.u)
-    pairs = ((now.q, later.q), (now.u, later.u), (now.q_rates, later.q_rates), (now.acceleration, later.acceleration))
-    return all(np.array_equal(*pair) for pair in pairs)
+    both = (np.hstack([each.q, each.u, each.q_rates, each.acceleration]) for each in (now, later))
+    return np.asarray(np.equal(*both).all(axis=1))
 
 
 def just_before(dynamics: Dynamics, piece: Evaluated, fired: tuple[int, ...]) -> Evaluated:

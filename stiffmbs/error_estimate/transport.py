@@ -67,14 +67,14 @@ class Transport:
             self._raise_if_singular(rows[some], len(found[-1]))
         return self._errors(np.concatenate(found)).reshape(rates.shape)
 
-    def corrections(self, at: Evaluated, cj: float, residuals: np.ndarray) -> np.ndarray:
-        """Return the errors x of cj x - J x = residuals at some states, shape (n, full)."""
-        return self.apart(self.rows(at)[:, None], np.full(len(at.t), 1.0 / cj), residuals[:, None])[:, 0]
+    def corrections(self, at: Evaluated, cj: np.ndarray, residuals: np.ndarray) -> np.ndarray:
+        """Return the errors x of cj x - J x = residuals at some states, shape (n, full), of which each has its cj."""
+        return self.apart(self.rows(at)[:, None], 1.0 / cj, residuals[:, None])[:, 0]
 
     def tangent(self, at: Evaluated, rates: np.ndarray) -> np.ndarray:
         """Return the part of some rates that is tangent to the constraints at some states, shape (n, full)."""
         cj = 1.0 / np.finfo(float).eps  # in so short a step, only constraints act
-        return cj * self.corrections(at, cj, rates)
+        return cj * self.corrections(at, np.full(len(at.t), cj), rates)
 
     def _parts(self, rates: np.ndarray) -> list[slice]:
         """Return parts of the steps that are in memory at once."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
@@ -18,8 +18,8 @@ from ..elements.requests.order import dimensions
 from ..elements.requests.output import Output
 from ..elements.states.amount import InputValue, formulas_of_inputs
 from ..elements.states.entry import StateValue
-from ..elements.states.equation import AngleCounter, FormulaOfRate, Reported, SampledUpdate, StateName, own_state
 from ..elements.states.section import AnyState, Scope, check_formula, check_states, names_in_formulas, refuse_loops
+from ..elements.states.state_name import StateName, own_state
 from ..methods import NotebookMethods
 from ..reading.did_you_mean import instead_of
 from ..reading.fields import Described
@@ -31,6 +31,9 @@ from ..reading.joint_name import JointName
 from ..reading.marker import GROUND, MarkerReference, check_marker
 from ..reading.names import beginnings
 from .current_pose import CurrentPose
+
+if TYPE_CHECKING:
+    from ..elements.states.equation import AngleCounter
 
 STARTS_LATER = "starts_later"
 """Key of a validation's context: names of the joints and forces that start to act in a later pose."""
@@ -169,6 +172,10 @@ class ModelData(NotebookMethods, Described):
 
     def state_equations(self) -> Iterator[tuple[str, Element]]:
         """Yield the rates or updates of the states by their names, and the outputs of their equations."""
+        if not self.states and not self.inputs:
+            return
+        from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate
+
         for name, state in self.states.items():
             for full, value in state.values(name):
                 equation = SampledUpdate if value.period else FormulaOfRate

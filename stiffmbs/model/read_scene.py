@@ -26,7 +26,8 @@ from .beams.division import beams_read
 from .beams.entries import with_beams
 from .files import expand
 from .files.effective import chosen_options, keep_one_grid
-from .files.stages import WrittenScene, with_held, written_stages
+from .files.stages import with_held, written_stages
+from .files.written_scene import WrittenScene
 from .model_data import STARTS_LATER
 from .parts.placed import with_parts
 from .parts.placing import NAMED, as_written, placed_in_use, set_in_instances

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from ..elements.element import Component
+from ..elements.read_by import of_class
 from ..elements.requests.check import check_output
 from ..elements.requests.order import dimension, dimensions
-from ..elements.roads.field import AnyRoad
+from ..elements.roads.field import ROAD
 from ..errors import prefixed
 from ..notes import of_users
 from ..reading.fields import Described
@@ -20,9 +21,18 @@ from ..reading.table import Table
 from ..reading.units.display import DisplayUnits, checked_units
 from ..reading.units.units import Quantity, in_text
 from .beams.division import Beams
-from .files.stages import Stage, WrittenScene
+from .files.written_scene import WrittenScene
 from .model_data import ModelData
 from .settings import RunSettings, StartPose, SteadyMotion
+
+if TYPE_CHECKING:
+    from .files.stages import Stage
+
+
+def _stage() -> type[Stage]:
+    from .files.stages import Stage
+
+    return Stage
 
 
 class Figure(Described):
@@ -48,7 +58,7 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
-    roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
+    roads: dict[str, Annotated[Any, ROAD]] = Field(default_factory=dict, description="roads that tyres name")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     start: StartPose | SteadyMotion = Field(
@@ -59,7 +69,9 @@ class Scene(ModelData):
     at_start: dict[str, Any] = Field(
         default_factory=dict, description="joints and drives that hold only at the start, by name"
     )
-    stages: tuple[Stage, ...] = Field((), description="consecutive runs, each with its own changes")
+    stages: tuple[Annotated[Any, of_class(_stage)], ...] = Field(
+        (), description="consecutive runs, each with its own changes"
+    )
     figure: Figure | None = Field(None, description="the main plot of the scene")
     units: dict[str, str] = Field(
         default_factory=dict,

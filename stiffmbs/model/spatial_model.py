@@ -21,7 +21,6 @@ from ..elements.spatial.forces.gyroscopic_torque import turnings
 from ..elements.spatial.marker import Placement
 from ..elements.spatial.orientation import matrix, product, rotated
 from ..elements.spatial.spatial_kinds import FORCES, JOINTS, AnyForce, AnyJoint
-from ..elements.states.equation import AngleCounter, counter_of
 from ..elements.turns import TURN
 from ..methods import ModelMethods
 from ..reading.given import Numbers
@@ -32,6 +31,8 @@ from .model_data import ModelData
 
 if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
+
+    from ..elements.states.equation import AngleCounter
 
 
 class OrFlexible:
@@ -70,7 +71,12 @@ class SpatialData(ModelData):
             term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
         )
         of_joints = (name for output in self.outputs().values() for name in channels_in(output) if self._turns(name))
-        for angle in dict.fromkeys((*map(str, angles), *of_joints)):
+        counted = dict.fromkeys((*map(str, angles), *of_joints))
+        if not counted:
+            return
+        from ..elements.states.equation import counter_of
+
+        for angle in counted:
             yield angle, counter_of(angle, frozenset((*self.bodies, *self.joints)))
 
     def _turns(self, channel: str) -> bool:

@@ -57,7 +57,9 @@ class _Groups:
     def __init__(self, model: ModelData) -> None:
         self._model = model
         self.geometry = geometry(model.dimensions)
-        self.placements: dict[str, dict[str, Any]] = {body: {body: self.geometry.Placement()} for body in model.bodies}
+        self.placements: dict[str, dict[str, Any]] = {
+            body: {body: self.geometry.Placement.model_construct()} for body in model.bodies
+        }
         self._first = {body: body for body in model.bodies}
         acting = [*model.joints.items(), *model.forces.items()]
         self._acts_between = [(name, {marker.body for _, marker in element.markers()}) for name, element in acting]

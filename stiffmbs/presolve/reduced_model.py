@@ -10,7 +10,7 @@ from typing import Any
 
 from ..elements.element import Element, Joint
 from ..elements.states.entry import StateValue
-from ..elements.states.equation import SpinAngle, StateName
+from ..elements.states.state_name import StateName
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
 from ..reading.marker import MarkerReference
@@ -74,6 +74,12 @@ class ReducedModel:
         yield from self.model.angle_counters()
         yield from self.model.state_equations()
         yield from self.model.inertial(self.bodies)
+        if self.axes:
+            yield from self._rates_of_spins()
+
+    def _rates_of_spins(self) -> Iterator[tuple[str, Element]]:
+        from ..elements.states.equation import SpinAngle
+
         for body, axis in self.axes.items():
             state, marker = StateName(name_of_angle(body)), MarkerReference.model_construct(body=body)
             yield state, SpinAngle.model_construct(state=state, i=marker, axis=axis)  # type: ignore[arg-type]
@@ -88,7 +94,7 @@ class ReducedModel:
 
     def on_parent(self, body: str) -> tuple[str, Any]:
         """Return the solved body that carries a body, and the placement of the latter on it."""
-        return self.members.get(body) or (body, geometry(self.dimensions).Placement())
+        return self.members.get(body) or (body, geometry(self.dimensions).Placement.model_construct())
 
 
 def geometry(dimensions: int) -> ModuleType:

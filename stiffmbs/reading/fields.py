@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import operator
 import re
+import sys
 import unicodedata
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -66,12 +67,26 @@ class _SignatureWhenAsked:
         return made.__get__(instance, described)
 
 
+def _evaluate_annotations(namespace: dict[str, Any]) -> None:
+    """Replace the annotations of a class by types: pydantic would compile each one again for every derived class.
+
+    They stay texts if a name is unknown as yet, or if names of a function around the class may be meant.
+    """
+    texts = namespace.get("__annotations__", {})
+    is_of_module = "<locals>" not in namespace.get("__qualname__", "<locals>")
+    if texts and is_of_module and all(type(text) is str for text in texts.values()):
+        with suppress(Exception):  # pydantic reports faults
+            types = eval(f"{', '.join(texts.values())},", vars(sys.modules[namespace["__module__"]]), namespace)
+            texts.update(zip(texts, types, strict=True))
+
+
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
     """Metaclass that reports errors of construction and of class definition as `InputError`."""
 
-    def __new__(mcs, name: str, *arguments: object, **options: object) -> Any:
+    def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: object) -> Any:
+        _evaluate_annotations(namespace)
         try:
-            made = super().__new__(mcs, name, *arguments, **options)
+            made = super().__new__(mcs, name, bases, namespace, **options)
         except PydanticUserError as error:
             raise InputError(f"{name}: {first_line(error)}") from error
         if not made.__pydantic_complete__:

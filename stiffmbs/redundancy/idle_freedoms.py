@@ -77,7 +77,7 @@ def _classified(
 ) -> IdleFreedom | None:
     """Return the idle freedom of a body, or None if it is connected to a single other body or held by forces."""
     system = dynamics.system
-    elastic = stiffnesses(dynamics.state, t).get(body, {})
+    elastic = stiffnesses(dynamics.state, body, t)
     forces = (group for group in system.groups if not group.record.n_equations)
     others = {
         name: {*bodies} for group in forces for name, bodies in zip(group.names, group.bodies.tolist(), strict=True)
@@ -99,11 +99,11 @@ def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[li
     """Return the forces that are stiff against motions of a body, here and further along, and the other motions."""
     state = dynamics.state
     scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)[: dynamics.system.of_body.n_u]
-    names, loose = held(stiffnesses(state, t).get(body, {}), free, scale)
+    names, loose = held(stiffnesses(state, body, t), free, scale)
     q = state.q.copy()
     for free_motion in loose:
         state.q[:] = screwed(dynamics.system, q, body, REDUNDANCY.further * scale * free_motion)
-        more, loose = held(stiffnesses(state, t).get(body, {}), loose, scale)
+        more, loose = held(stiffnesses(state, body, t), loose, scale)
         names = list(dict.fromkeys([*names, *more]))
         state.q[:] = q
     return names, loose
@@ -140,15 +140,15 @@ def _motion(motions: np.ndarray, linear: int) -> str:
     return "turn"
 
 
-def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
-    """Return the tangent stiffness -df/dq Z of each force against displacements of each body, by body and force.
+def stiffnesses(state: State, body: int, t: float) -> dict[str, np.ndarray]:
+    """Return the tangent stiffness -df/dq Z of each force against displacements of a body, by force.
 
-    Weights, dampers, friction and open contacts have none. `state`: at the pose. `t`: s. Returns an array of shape
+    Weights, dampers, friction and open contacts have none. `state`: at the pose. `t`: s. Returns arrays of shape
     (n_u, n_u): angles and moments in the solver's axes; SI units.
     """
     system = state.system
     groups = [(g, group) for g, group in enumerate(system.groups) if group.entries["f_q"] and group.kind.element.kind]
-    found: dict[int, dict[str, np.ndarray]] = {}
+    found: dict[str, np.ndarray] = {}
     if not groups:
         return found
     state.evaluate("tangent", t)
@@ -156,10 +156,8 @@ def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
     for g, group in groups:
         first, width = system.places["tangent"][g, at], group.entries["f_q"]
         values = state.values["tangent"][first : first + group.count * width].reshape(group.count, width)
-        for e, k in zip(*np.nonzero(_acts(group, values) & (group.bodies < len(system.bodies))), strict=True):
-            body = int(group.bodies[e, k])
-            f_q = _block(group, values[e], k)
-            found.setdefault(body, {})[group.names[e]] = -f_q @ _moves(state, body)
+        for e, k in zip(*np.nonzero(_acts(group, values) & (group.bodies == body)), strict=True):
+            found[group.names[e]] = -_block(group, values[e], k) @ _moves(state, body)
     return found
 
 

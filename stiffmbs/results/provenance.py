@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..model.files.stages import WrittenScene
+from ..model.files.written_scene import WrittenScene
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings

@@ -12,7 +12,7 @@ from ..analyses.renumber import renumbered
 from ..analyses.run import Finished, finished, solved
 from ..errors import InputError, StiffmbsError
 from ..model.files.other_forces import OtherForces
-from ..model.files.stages import WrittenScene
+from ..model.files.written_scene import WrittenScene
 from ..model.read_scene import read_changed
 from ..model.scene import Scene
 from ..model.settings import RunSettings

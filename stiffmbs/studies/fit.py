@@ -12,7 +12,7 @@ import numpy as np
 from ..analyses.job import Runnable
 from ..analyses.run import solved
 from ..errors import InputError, SolverError, StiffmbsError
-from ..model.files.stages import WrittenScene
+from ..model.files.written_scene import WrittenScene
 from ..reading.files.quoted import written as as_written
 from ..results.solution import Solution
 from ..solve.settings import changed

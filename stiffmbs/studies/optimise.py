@@ -10,7 +10,7 @@ import numpy as np
 
 from ..analyses.job import Runnable
 from ..errors import InputError, SolverError, StiffmbsError
-from ..model.files.stages import WrittenScene
+from ..model.files.written_scene import WrittenScene
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .outputs import Output, outputs_of

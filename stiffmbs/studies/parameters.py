@@ -11,7 +11,7 @@ import numpy as np
 from ..analyses.job import Job, prepare
 from ..analyses.renumber import renumbered
 from ..errors import InputError
-from ..model.files.stages import WrittenScene
+from ..model.files.written_scene import WrittenScene
 from ..model.settings import RunSettings
 from ..reading.did_you_mean import instead_of
 from ..reading.variation import Range, Variation, variation

@@ -88,3 +88,19 @@ def test_what_was_registered_for_the_end_of_the_process_before_the_command_is_ca
         env={**os.environ, "PYTHONPATH": path},
     )  # fmt: skip
     assert found.stdout.split()[-1] == "called"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scene", ["half_car", "car"])
+def test_a_check_of_a_scene_that_was_read_before_builds_no_validators(scene):
+    """Each takes milliseconds; a cached scene is not validated, and what follows from it is constructed without."""
+    program = (
+        "import sys, stiffmbs; from stiffmbs.reading.fields import Described;"
+        f"stiffmbs.check({str(EXAMPLES / f'{scene}.yaml')!r});"
+        "found = [Described];"
+        "[found.extend(kind.__subclasses__()) for kind in found];"
+        "print(*[kind.__name__ for kind in found if kind.__pydantic_complete__], 'of', len(found))"
+    )
+    for _ in range(2):  # the first may have to read it
+        found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert found.stdout.split()[0] == "of"

@@ -7,7 +7,7 @@ from unittest.mock import patch
 import numpy as np
 import sympy as sp
 
-from stiffmbs.elements import initial_pose
+from stiffmbs.elements import initial_pose, loads
 from stiffmbs.elements.forces import friction
 from stiffmbs.elements.joints import point_on_curve
 from stiffmbs.elements.roads import crg, crg_grid, grid, iso8608, reference_line, rolling_filter
@@ -330,7 +330,7 @@ def checked_loads():
 
 
 DECISIONS = {
-    "elements.forces.friction:TINY": lambda: float(friction.length()),
+    "elements.loads:TINY": lambda: float(loads.length()),
     "elements.forces.friction:AT_REST": slowest_sliding,
     "elements.initial_pose:SAME_POINT": largest_distance_at_one_place,
     "elements.joints.point_on_curve:CLOSED": largest_gap_of_a_cam,
@@ -394,7 +394,7 @@ DECISIONS = {
     "elements.tyres.steady_state:BEYOND": end_of_the_search,
 }  # fmt: skip
 EXPECTED = {
-    "elements.forces.friction:TINY": 1e-12, "elements.forces.friction:AT_REST": 1e-06, "elements.initial_pose:SAME_POINT": 27,
+    "elements.loads:TINY": 1e-12, "elements.forces.friction:AT_REST": 1e-06, "elements.initial_pose:SAME_POINT": 27,
     "elements.joints.point_on_curve:CLOSED": 27, "elements.roads.crg:MOST_SECTIONS": 32, "elements.roads.crg:MOST_HEIGHTS": 22,
     "elements.roads.crg:STRAIGHT": 27, "elements.roads.crg:LEVEL": 6, "elements.roads.crg_grid:SAME_HEADING": 27,
     "elements.roads.envelope:MOST_TRACKS": 20, "elements.roads.grid:MOST_LINES": 31, "elements.roads.iso8608:POINTS": 4.0,

@@ -34,7 +34,7 @@ def shift_of_time():
         return evaluated(dynamics, t, *states)
 
     with patch.object(restarts, "evaluated", noted):
-        restarts.is_autonomous(dynamics, at)
+        restarts.autonomous(dynamics, at)
     return max(times)
 
 
@@ -167,6 +167,19 @@ def step_at_an_event(length):
     return bars["f"].over_time < 0.5
 
 
+def part_in_shared_steps():
+    """Return the steps of 10000, taken by a second run too, up to which that gives the errors."""
+    ends = np.linspace(0.0, 1.0, 10_001)
+
+    def gives_errors(count):
+        own, shared = ends[1:], ends[1 : count + 1]
+        others = np.concatenate([shared, np.linspace(ends[count], 1.0, 20_001)[1:]])
+        runs = [Record(t=np.zeros(1), step_times=each, statistics={"steps": len(each)}) for each in (own, others)]
+        return of_runs._takes_other_steps(*runs, 0.1, of_runs._shared(*runs))
+
+    return count_while(gives_errors, range(100, 2000, 100))
+
+
 DECISIONS = {
     "error_estimate.events": events_that_are_free,
     "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.most,
@@ -190,6 +203,7 @@ DECISIONS = {
     "error_estimate.converged": lambda: transport_of(3)[1],
     "error_estimate.solution": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.solution,
     "error_estimate.second": lambda: of_runs._part_of_second(1e-6),
+    "error_estimate.shared": part_in_shared_steps,
     "error_estimate.restart": restarts_that_are_kept,
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
@@ -209,7 +223,7 @@ EXPECTED = {
     "error_estimate.converged": 1e-04,
     "error_estimate.solution": 2.0,
     "error_estimate.second": 0.1,
-    "error_estimate.restart": 21,
+    "error_estimate.shared": 5, "error_estimate.restart": 21,
     "error_estimate.row": 50.0,
     "error_estimate.smooth": 27,
     "error_estimate.intervals": 48,

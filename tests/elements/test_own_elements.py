@@ -247,6 +247,7 @@ JOINT = {"kind": "mine", "equations": ("x",)}
         (stiffmbs.Joint, {"kind": "mine"}, r"Mine: found no equations, expected a static method position"),
         (stiffmbs.Joint, {"kind": "mine", "position": lambda e: [e.i.point[0]]}, r"Mine: found no names of equations"),
         (stiffmbs.Joint, {**JOINT, "position": lambda e: [0], "coordinates": ("s",)}, r"Mine: found the coordinate 's' without"),
+        (stiffmbs.Joint, {**JOINT, "coordinates": ("angle",), "channels": ("x",)}, r"Mine: found channels x of a joint with coordinates, expected none"),
         (stiffmbs.Force, {"kind": "mine"}, r"Mine: found no law, expected a static method efforts"),
         (stiffmbs.Force, {"kind": "mine", "efforts": lambda self, e: []}, r"Mine: found efforts\(self, e\), expected a static method efforts\(e\)"),
         (stiffmbs.Joint, {**JOINT, "position": lambda e: [e.i.point[0], 1]}, r"x: Mine: found 2 expressions .* expected 1, .*\(x\)"),

@@ -232,6 +232,13 @@ def test_steps_that_breakpoints_limit_need_a_smaller_tolerance():
     assert 1 / 2 < ratio(found, "first.angle", truth["first.angle"]) < 2
 
 
+def test_a_long_step_of_both_runs():
+    """The first of four steps was that of the second run, and most of the error: the estimate was a hundredth of it."""
+    scene, how = drawn(51223, "projected")
+    ratios = assess(scene, {**how, "rtol": 1e-3}).ratios()
+    assert len(ratios) == 3 and all(1 / 2 < each < 2 for each in ratios.values())
+
+
 def test_peaks_of_explicit_runs_are_those_between_outputs():
     """A mass on a spring with three output times, which miss its amplitude of 0.1 m."""
     scene = """

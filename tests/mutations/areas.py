@@ -34,7 +34,7 @@ AREAS = {
     ),
     "tyres": Area(("stiffmbs/elements/tyres/*.py", "stiffmbs/elements/spatial/forces/*tyre.py"), ("tests/tyres", "tests/roads", *ELEMENTS)),
     "friction": Area(
-        ("stiffmbs/elements/forces/*friction.py", "stiffmbs/elements/spatial/forces/joint_friction.py"),
+        ("stiffmbs/elements/loads.py", "stiffmbs/elements/forces/*friction.py", "stiffmbs/elements/spatial/forces/joint_friction.py"),
         ("tests/elements/test_joint_friction.py", "tests/elements/test_spatial_joint_friction.py", "tests/adams", *ELEMENTS),
     ),
     "events": Area(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -36,6 +37,18 @@ def test_archives_contain_the_arrays(tmp_path: Path) -> None:
         for name, values in ARRAYS.items():
             assert found[name].dtype == values.dtype and found[name].shape == values.shape
             np.testing.assert_array_equal(found[name], values)
+
+
+def test_members_are_those_of_numpy(tmp_path: Path) -> None:
+    """Heads of channels are written once for all of a type and length."""
+    path, expected = tmp_path / "a.npz", io.BytesIO()
+    write_archive(path, ARRAYS)
+    with ZipFile(path) as archive:
+        for name, values in ARRAYS.items():
+            expected.seek(0)
+            expected.truncate()
+            np.save(expected, values)
+            assert archive.read(f"{name}.npy") == expected.getvalue(), name
 
 
 def test_the_same_arrays_are_the_same_file(tmp_path: Path) -> None:

@@ -125,6 +125,38 @@ def test_an_fmu_moves_as_a_run_does(tmp_path, name, kind, bound, version):
         assert np.abs(np.array(values)[at] - run[channel]).max() <= bound * size, channel
 
 
+MEASURED = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+parameters: {g: 3}
+bodies:
+  bar: {mass: 2, inertia: [0.1, 0.2, 0.2], position: [0.5, 0, 0], omega: [0, 0, 25], markers: {end: {point: [0.5, 0, 0]}}}
+joints: {pin: {type: spherical, i: {body: bar, point: [-0.5, 0, 0]}, j: ground}}
+requests:
+  turned: az(bar)
+  tip: {along: "dx(bar.end)", speed: g*vm(bar.end)^2, high: "max(dz(bar.end), 0)"}
+  pull: fm(pin)
+run: {duration: 1 s, output: 10 ms, rtol: 1e-9}
+"""
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_requests_of_positions_and_velocities_are_outputs(tmp_path, kind):
+    """The bar turns more than once. Requests that Python computes are left out with a note."""
+    scene, fmu = tmp_path / "bar.yaml", tmp_path / "bar.fmu"
+    scene.write_text(MEASURED, encoding="utf-8")
+    with pytest.warns(RuntimeWarning, match="are computed by Python, and no outputs: pull"):
+        channels = stiffmbs.build_fmu(scene, fmu, native=True)
+    assert channels == ("turned", "tip.along", "tip.speed", "tip.high")
+    (faults, times, found), _ = told_by(SIMULATED, fmu, kind, 1.0, 0.01, json.dumps(channels))
+    run = stiffmbs.run(scene, solver="projected", rtol=1e-12)
+    assert faults == [] and run["turned"][-1] > 2 * np.pi
+    at = np.searchsorted(times, run.t - 1e-8)
+    for channel, values in zip(channels, found, strict=True):
+        size = max(1.0, np.abs(run[channel]).max())
+        assert np.abs(np.array(values)[at] - run[channel]).max() <= 1e-6 * size, channel
+
+
 ALONE = """
 import ctypes, json, sys
 from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
@@ -344,7 +376,7 @@ def test_versions_are_2_and_3(built, tmp_path):
         stiffmbs.build_fmu(tmp_path / "pushed.yaml", tmp_path / "a.fmu", version="3.0")
 
 
-REQUESTS = SCENE + "requests: {where: 2*sled.x}\n"
+REQUESTS = SCENE + "requests: {where: 2*rail.fy}\n"
 REFUSED = {
     "requests": (REQUESTS, (), "the output 'where' is computed by Python; choose others by --channel"),
     "unknown": (SCENE, ("sled.q",), "found no channel 'sled.q'"),

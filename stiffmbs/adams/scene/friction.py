@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...elements.forces.friction import AT_REST, TINY
+from ...elements.forces.friction import AT_REST
+from ...elements.loads import TINY
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL, Joint
 from ..statements.friction import JointFriction

@@ -11,7 +11,7 @@ from ...elements.element import Joint
 from .element import SymbolicElement
 
 if TYPE_CHECKING:
-    from ...elements.forces.friction import Loads
+    from ...elements.loads import Loads
     from .spatial_frames import SpatialFrame
 
 

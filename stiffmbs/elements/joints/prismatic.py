@@ -6,7 +6,7 @@ from pydantic import Field
 
 from ...reading.marker import Marker
 from ..element import Expr, Symbolic
-from ..forces.friction import Loads, magnitude
+from ..loads import Loads, magnitude
 from ..turns import WithinHalfATurn
 from .planar_pair import PlanarPair
 

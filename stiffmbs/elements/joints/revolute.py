@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..element import Matrix, Symbolic
-from ..forces.friction import Loads, magnitude
+from ..loads import Loads, magnitude
 from ..turns import KeepsDescribedTurns
 from .planar_pair import PlanarPair
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
-from typing import Annotated
+from typing import TYPE_CHECKING
 
 from ...reading.did_you_mean import instead_of
 from ...reading.fields import located, named_entries
 from ...reading.files.quoted import quoted
 from ..read_by import Context, JsonSchema, ReadBy, class_of
-from .road import Road
+
+if TYPE_CHECKING:
+    from .road import Road
 
 ROADS: Mapping[str, str] = {
     "flat": "road:FlatRoad",
@@ -39,6 +41,8 @@ def _imported(place: str) -> type[Road]:
 
 def read_road(found: object, context: Context) -> Road:
     """Return the road of a field."""
+    from .road import Road
+
     if isinstance(found, Road):
         return found
     if isinstance(found, str):
@@ -55,7 +59,8 @@ def _schema(schema_of: Callable[[type[Road]], JsonSchema]) -> JsonSchema:
     return {"anyOf": [name, *(schema_of(kind_of_road(kind)) for kind in ROADS)]}
 
 
-AnyRoad = Annotated[Road, ReadBy(read_road, _schema)]
+ROAD = ReadBy(read_road, _schema)
+"""Marker of a field with a road: ``Annotated[Road, ROAD]``."""
 
 
 def read_roads(found: object, context: Mapping[str, object]) -> dict[str, Road]:

@@ -15,7 +15,7 @@ from ...reading.formula.names import SPACE
 from ...reading.handle import Handle
 from ...reading.units import si
 from ..body import check_names
-from .geometry import SpatialGeometry
+from ..geometry import SpatialGeometry
 from .marker import ORIGIN, Marker, Placement, Point
 from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated, unit_quaternion
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from ...reading.units import si
-from ..shape import MeshShape, OneFor, PolylineShape, Shape, one_of_shapes
+from ..shape import MeshShape, PolylineShape, Shape
 from .marker import ORIGIN, Point
 from .orientation import IDENTITY, Orientation
 
@@ -52,5 +52,3 @@ class Mesh(MeshShape, Placed):
 
 
 SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
-SpatialGeometry = Annotated[tuple[Annotated[Any, one_of_shapes(*SHAPES)], ...], OneFor()]
-"""Shapes of a body; a single one needs no list."""

@@ -11,7 +11,8 @@ from pydantic import Field, model_validator
 from ...reading.fields import Measured
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp
-from ..forces.friction import AT_REST, length
+from ..forces.friction import AT_REST
+from ..loads import length
 from .marker import Marker
 from .wrench import Pairs, velocity
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp
 from ..roads.envelope import Envelope
-from ..roads.field import AnyRoad
-from ..roads.road import FlatRoad, above_zero
+from ..roads.field import ROAD
+from ..roads.road import FlatRoad, Road, above_zero
 from .contact_point import ContactPoint, contact_point, slips
 from .marker import Marker
 from .relaxation import lagged
@@ -92,7 +93,7 @@ class Tyre(Force):
     j: Marker | None = Field(
         None, description="whose axes the road's x, y and z are, on a body that carries it; ground by default"
     )
-    road: AnyRoad = Field(
+    road: Annotated[Road, ROAD] = Field(
         FlatRoad.model_construct(type=FlatRoad.kind),
         description="the name of a road of the scene, or a road; level at z = 0 by default",
     )

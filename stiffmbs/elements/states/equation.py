@@ -3,30 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from ...reading.formula.field import OfMotion, OfPosition
 from ...reading.marker import MarkerReference
 from ...reading.names import Names
 from ..element import Element, Expr, Symbolic
-
-if TYPE_CHECKING:
-    from pydantic_core import CoreSchema
-
-
-def own_state(element: str, state: str) -> str:
-    """Return the full name of an element's own state."""
-    return f"{element}.{state}"
-
-
-class StateName(str):
-    """Full name of a state."""
-
-    @classmethod
-    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> CoreSchema:
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())
+from .state_name import StateName
 
 
 class StateEquation(Element):

@@ -16,7 +16,7 @@ from typing import Annotated, Any, Literal, Self, cast
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...elements.shape import one_of
+from ...elements.geometry import one_of
 from ...errors import prefixed
 from ...reading.fields import Described, Measured
 from ...reading.units import si
@@ -304,7 +304,7 @@ class Drawn(Section):
 SECTIONS = (Circle, Tube, Rectangle, IProfile, Angle, Channel, Numbers, Drawn)
 
 
-AnySection = Annotated[Any, one_of("a section such as {type: circle, diameter: 10 mm}", *SECTIONS)]
+AnySection = Annotated[Any, one_of("a section such as {type: circle, diameter: 10 mm}", lambda: SECTIONS)]
 
 
 class Material(Described):

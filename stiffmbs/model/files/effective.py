@@ -10,7 +10,7 @@ from ...reading.files.yaml_text import Content, read_yaml
 from ..parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from ..parts.placing import placed_in_use, set_in_instances
 from . import expand
-from .stages import WrittenScene
+from .written_scene import WrittenScene
 
 Changes = Sequence[tuple[str, object]]
 """Values by their paths."""

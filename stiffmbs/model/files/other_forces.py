@@ -18,7 +18,7 @@ from ...reading.units.units import Quantity
 from ..parts.options import CHOOSE, OPTIONS
 from ..scene import Scene
 from .expand import read_parameter, replaced_parameters, set_value, unshared
-from .stages import WrittenScene
+from .written_scene import WrittenScene
 
 PARAMETERS, FORCES = "parameters", "forces"
 NOT_AS_WRITTEN = ("use", "stages", OPTIONS, CHOOSE)

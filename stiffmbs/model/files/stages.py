@@ -1,11 +1,10 @@
-"""Source of a scene, and scenes run in consecutive stages, each with other joints, forces or numbers."""
+"""Scenes run in consecutive stages, each with other joints, forces or numbers."""
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
@@ -15,21 +14,7 @@ from ...reading.fields import Described
 from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import Content, read_yaml
 from ...reading.units import si
-
-
-@dataclass(frozen=True)
-class WrittenScene:
-    """Content of a scene file, and its changes; comparisons of scenes ignore it."""
-
-    content: Content = field(compare=False)  # content of the file, with included files; read-only
-    changes: tuple[tuple[str, object], ...] = field(compare=False)  # values that replace those of the file
-    source: str = field(compare=False)  # name of the scene in messages
-    folder: Path | None = field(compare=False)  # folder of meshes
-    # digests of all other files that were read for it, and of the code of user-defined elements
-    files: dict[str, str] = field(default_factory=dict, compare=False)
-    # joints and forces that start to act after the described pose, in a stage
-    starts_later: frozenset[str] = field(default=frozenset(), compare=False)
-
+from .written_scene import WrittenScene
 
 BOUNDS = ("at_least", "at_most", "equals")
 

@@ -6,7 +6,6 @@ Stores and caches depend on this record: a scene is different if a file that it 
 from __future__ import annotations
 
 import errno
-import hashlib
 import os
 import stat
 from collections.abc import Iterator, Mapping
@@ -66,7 +65,7 @@ def content_of(path: str | Path, largest: int = LARGEST) -> bytes:
         content = file.read(largest + 1)
     if len(content) > largest:  # the file has grown, or has no size
         raise _too_large(path, len(content), largest)
-    record({str(path): hashlib.sha256(content).hexdigest()})
+    record({str(path): _digest(content)})
     return content
 
 
@@ -78,9 +77,15 @@ def check_regular(path: str | Path) -> None:
 def digest_of_file(path: str | Path) -> str:
     """Return the digest of a file's content, or an empty string if it cannot be read."""
     try:
-        return hashlib.sha256(content_of(path)).hexdigest()
+        return _digest(content_of(path))
     except (OSError, ValueError):
         return ""
+
+
+def _digest(content: bytes) -> str:
+    import hashlib  # it loads OpenSSL, which --help does not need
+
+    return hashlib.sha256(content).hexdigest()
 
 
 def _check(found: os.stat_result, path: str | Path, largest: int | None) -> None:

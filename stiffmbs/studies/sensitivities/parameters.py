@@ -10,7 +10,7 @@ from typing import Any
 from ...analyses.job import Runnable, data_of
 from ...errors import InputError
 from ...model.files.other_forces import OtherForces
-from ...model.files.stages import WrittenScene
+from ...model.files.written_scene import WrittenScene
 from ...model.read_scene import read_changed
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean

@@ -140,6 +140,9 @@ def _scene(rng: np.random.Generator) -> dict[str, Any]:
     content.setdefault("parameters", {})[GAIN] = 0.5
     content.setdefault("inputs", {})[GIVEN] = 0.0
     content.setdefault("forces", {})[PUSH] = {"type": "force", "i": body, "force": [f"{GAIN} + {GIVEN}", *zeros]}
+    measures = ("dx", "dm", "az", "vm", "wz") if not zeros[1:] else ("dx", "dz", "ax", "az", "vx", "vm", "wz", "wm")
+    own = [f"{measure}({body})" for measure in rng.choice(measures, 2, replace=False)]
+    content["requests"] = {"fmu_first": own[0], "fmu_second": f"2*{own[1]} + {GAIN}*{body}.vx"}
     content["run"] |= {"rtol": RTOL, "points": STEPS + 1}
     return content
 
@@ -156,11 +159,11 @@ def _built_without_python(scene: Path, fmu: Path, channels: tuple[str, ...], gai
 
 
 def _channels(scene: Path) -> tuple[str, ...]:
-    """Return the names of the positions and velocities of all bodies, and of the states; only collisions make them discontinuous."""
+    """Return the names of the positions and velocities of all bodies, of the states, and of requests; only collisions make them discontinuous."""
     data = load_scene(scene)
     labels = "x y angle vx vy omega" if data.dimensions == 2 else "x y z vx vy vz wx wy wz"
     bodies = [f"{body}.{label}" for body in data.bodies for label in labels.split()]
-    return (*bodies, *data.states)
+    return (*bodies, *data.states, *data.outputs())
 
 
 def _by_runs(scene: Path, given: Given, channels: tuple[str, ...]) -> tuple[np.ndarray, list[str]]:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
 from ....reading.units import si
 from ...element import Expr, Matrix, Symbolic
 from ...forces.contact import PressedSurfaces
-from ...roads.field import AnyRoad
-from ...roads.road import FlatRoad
+from ...roads.field import ROAD
+from ...roads.road import FlatRoad, Road
 from ..contact_point import surface
 from ..marker import Marker
 from ..wrench import Pairs, velocity
@@ -46,7 +46,7 @@ class RoadContact(PressedSurfaces):
         None,
         description="marker with the axes x, y and z of the road, on the body that carries the road; ground by default",
     )
-    road: AnyRoad = Field(
+    road: Annotated[Road, ROAD] = Field(
         FlatRoad.model_construct(type=FlatRoad.kind),
         description="the name of a road of the scene, or a road; level at z = 0 by default",
     )

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ....reading.units import si
 from ...element import Expr, Symbolic, sp
-from ...forces.friction import length as of_vector
+from ...loads import length as of_vector
 from ..impact import Impact, Touch
 from ..marker import Marker
 from ..wrench import along_axes, seen_from

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from ...element import Symbolic
-from ...forces.friction import Loads, magnitude
+from ...loads import Loads, magnitude
 from ..marker import Marker
 from ..primitives import ALIGN, ON_AXIS, SpatialJoint
 

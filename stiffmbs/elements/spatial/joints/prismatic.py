@@ -7,7 +7,7 @@ from dataclasses import replace
 from pydantic import Field
 
 from ...element import Symbolic
-from ...forces.friction import Loads, magnitude
+from ...loads import Loads, magnitude
 from ..branches import initially_askew
 from ..marker import Marker
 from ..primitives import ON_AXIS, ORIENT, SpatialJoint

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...element import Symbolic, sp
-from ...forces.friction import Loads, magnitude
+from ...loads import Loads, magnitude
 from ..primitives import ALIGN, COINCIDE, SpatialJoint, Turns
 
 

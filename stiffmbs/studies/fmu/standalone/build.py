@@ -11,6 +11,7 @@ from uuid import NAMESPACE_URL, uuid5
 
 from ....compile.machine.routines import fully_compiled
 from ....model.scene import Scene
+from ....notes import NoteKind, Severity
 from ....results.files import written_whole
 from ....tuning import in_use
 from .description import description
@@ -20,6 +21,14 @@ from .model import ENTRIES, exported_model
 
 NOTICES = C_CODE / "notices.txt"
 """Licences of parts of the library."""
+
+
+LEFT_OUT = NoteKind(
+    "fmu-requests",
+    "requests of reactions, accelerations, energies, parts or other requests are computed by Python, and no outputs: {requests}",
+    "request channels of the FMU by --channel, or write it without --native",
+    Severity.REMARK,
+)
 
 
 class Written(NamedTuple):
@@ -46,7 +55,13 @@ def _written(scene: Scene, target: Path, identifier: str, outputs: Sequence[str]
     """Write the FMU with the parameters in use; see `write_standalone_fmu`."""
     of = own_platform()
     model = exported_model(scene)
-    places = model.chosen(tuple(outputs) or tuple(scene.outputs()) or tuple(model.places))
+    chosen, notes = tuple(outputs), model.notes
+    if not chosen:
+        requests = tuple(scene.outputs())
+        chosen = tuple(name for name in requests if name in model.places) or requests or tuple(model.places)
+        if left := [name for name in requests if name not in chosen]:
+            notes = (*notes, LEFT_OUT(requests=", ".join(left)))
+    places = model.chosen(chosen)
     found = linkable([*ENTRIES.values(), *model.image.functions], of)
     symbols = dict(zip(ENTRIES, found.names, strict=False))
     functions = found.names[len(ENTRIES) :]
@@ -65,4 +80,4 @@ def _written(scene: Scene, target: Path, identifier: str, outputs: Sequence[str]
                 archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)  # without the date
 
     written_whole(target, write)
-    return Written(tuple(places), model.notes)
+    return Written(tuple(places), notes)

@@ -33,6 +33,7 @@ from ....solve.settings import changed, traits_of
 from ...case_solver import CaseSolver, Task, written_scene
 from ...input_numbers import TRIED, InputNumbers
 from ...simulation import OWN_INPUTS
+from .reported import registered, with_reported
 
 ENTRIES: Mapping[str, Addressed] = {
     "ADVANCE": ADVANCE, "OUTPUT_POINTS": OUTPUT_POINTS, "CONSISTENT_RATES": CONSISTENT_RATES, "EVENT_FUNCTIONS": EVENT_FUNCTIONS,
@@ -125,13 +126,15 @@ def refused(reason: str) -> str:
     return f"an FMU without Python is not possible for this scene: {reason}, or write the FMU with Python (without --native)"
 
 
+@registered()
 def exported_model(scene: Scene) -> ExportedModel:
     """Return the model of a scene for an FMU.
 
     Raises InputError for what only an FMU with Python computes.
     """
     given = {name: float(value) for name, value in scene.inputs.items() if isinstance(value, float | int)}
-    solver = CaseSolver(Task(written_scene(scene), tuple(f"{OWN_INPUTS}.{name}" for name in given), {}, ()))
+    written, of_requests = with_reported(scene, written_scene(scene))
+    solver = CaseSolver(Task(written, tuple(f"{OWN_INPUTS}.{name}" for name in given), {}, ()))
     scene = solver.scene([*given.values()])
     job = prepare(scene, changed(scene.run, {"presolve": False}))
     dynamics, grid = job.dynamics, job.grid
@@ -147,19 +150,11 @@ def exported_model(scene: Scene) -> ExportedModel:
     work.watch.watch_for(np.zeros(work.watch.n_event_functions))
     image = image_of([work.table, dynamics.table, work.watch.table])
     states, places, others = _variables(dynamics)
-    places = {name: place for name, place in places.items() if name not in given}
+    own = {channel: name for name, channel in of_requests.items()}
+    places = {own.get(name, name): place for name, place in places.items() if name not in given}
+    requests = tuple(name for name in scene.outputs() if name not in places)
     return ExportedModel(
-        job,
-        work,
-        image,
-        states,
-        places,
-        (*others, *scene.outputs()),
-        given,
-        numbers,
-        features.breakpoints,
-        grid.aside,
-        notes,
+        job, work, image, states, places, (*others, *requests), given, numbers, features.breakpoints, grid.aside, notes
     )
 
 
