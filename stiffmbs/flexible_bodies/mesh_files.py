@@ -66,7 +66,7 @@ def _without_angles(lines: Iterable[str]) -> Iterator[str]:
     shell = ""
     for line in lines:
         card = line[:8].partition(",")[0].strip().upper()
-        if shell and ((line[:1] in "+ \t" and line.strip()) or line.startswith(",")):  # the rest of the card
+        if shell and (line.startswith(("+", ",")) or (line.strip() and not line[:8].strip())):  # the rest of the card
             if NOT_ZERO.search(line[8:] if "," not in line else line.partition(",")[2]):
                 raise InputError(f"found {shell} with thicknesses at its nodes, expected one thickness of each element")
             continue

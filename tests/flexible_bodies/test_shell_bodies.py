@@ -308,3 +308,29 @@ def test_a_coarse_dome_has_a_note(tmp_path):
     assert "shells with two curvatures and elements of 2.7 times the root of radius and thickness" in note
     model, _ = plate(tmp_path, along=6, across=6)
     assert reduce(model, [], 2).notes == ()
+
+
+def test_a_plate_sags_under_its_weight_as_the_mesh_does(folder):
+    """Residual modes alone: the weight of the mesh, and its static solution, in a scene."""
+    body = SHELL + "    residual_modes: true\n    stiffening: false\n"
+    model = scene(
+        folder,
+        "plate",
+        body.replace("modes: 6", "modes: 0"),
+        "gravity: [0, 0, -9.81]\n" + CLAMP + "run: {duration: 1 ms, solver: radau}\n",
+    )
+    found = equilibrium(model).solution
+    described, place = model.bodies["plate.frame"].source
+    mesh = described.model(place)
+    held = mesh.entries(np.flatnonzero(mesh.nodes[:, 0] < 1e-9))
+    end = np.flatnonzero(mesh.nodes[:, 0] > LENGTH - 1e-9)
+    weight = mesh.inertial_forces(np.array([[0.0], [0.0], [-9.81]]), np.zeros((3, 3, 1)), np.zeros(3))[:, 0]
+    interfaces = described.interfaces_on(mesh)
+    # the end moves as a rigid body in the reduction: so it does here
+    rigid = interfaces[1].rigid(mesh)
+    others = np.setdiff1d(np.arange(mesh.size), np.concatenate([held, mesh.entries(end)]))
+    basis = np.zeros((mesh.size, len(others) + 6))
+    basis[others, np.arange(len(others))] = 1.0
+    basis[interfaces[1].entries(mesh), len(others) :] = rigid
+    expected = np.linalg.solve(basis.T @ (mesh.stiffness @ basis), basis.T @ weight)[len(others) :]
+    assert found["plate.b.z"][-1] == pytest.approx(expected[2], rel=2e-5)
