@@ -1,4 +1,4 @@
-"""Areas of the nodes on the surface of a mesh."""
+"""Areas of the nodes on the surface of a mesh, or of the shells between them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import numpy as np
 
 from .finite_elements import FiniteElements
 from .shapes import ELEMENTS, face_rule
+from .shells.shell import DIVISION
+from .shells.triangle import axes_of
 
 
 def nodal_areas(model: FiniteElements, nodes: np.ndarray) -> np.ndarray:
@@ -17,6 +19,14 @@ def nodal_areas(model: FiniteElements, nodes: np.ndarray) -> np.ndarray:
     chosen, areas = np.zeros(len(model.nodes), dtype=bool), np.zeros(len(model.nodes))
     chosen[nodes] = True
     faces: dict[tuple[int, ...], list[tuple[np.ndarray, np.ndarray]]] = {}
+    if model.shell is not None:
+        for kind, cells in model.cells.items():
+            inside = cells[chosen[cells].all(axis=1)]
+            for corners in DIVISION[kind]:
+                triangles = inside[:, list(corners)]
+                share = axes_of(model.nodes[triangles])[2] / (3 * max(1, len(DIVISION[kind]) // 2))
+                np.add.at(areas, triangles, share[:, None])
+        return areas[nodes]
     for kind, cells in model.cells.items():
         element = ELEMENTS[kind]
         for face in (*element.shape.triangles, *element.shape.quadrilaterals):

@@ -29,9 +29,9 @@ class Front:
 
 
 class Cholesky:
-    """Factors L L^T of a symmetric positive definite matrix of shape (3 n, 3 n), with three rows for each node.
+    """Factors L L^T of a symmetric positive definite matrix with the same number c of rows for each of n nodes.
 
-    `points` of shape (n, 3): positions of the nodes. Raises numpy.linalg.LinAlgError if it is not positive definite.
+    `matrix` of shape (c n, c n). `points` of shape (n, 3): positions of the nodes. Raises numpy.linalg.LinAlgError if it is not positive definite.
 
     A. George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973) 345-363.
     J. W. H. Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992) 82-109.
@@ -40,12 +40,13 @@ class Cholesky:
     def __init__(self, matrix: csc_array, points: np.ndarray) -> None:
         parts = dissection(matrix, points)
         nodes = np.concatenate([np.empty(0, dtype=np.int64), *parts])
-        self._order = (3 * nodes[:, None] + np.arange(3)).ravel()
-        ends = np.cumsum([3 * len(part) for part in parts])
+        width = matrix.shape[0] // max(1, len(points))
+        self._order = (width * nodes[:, None] + np.arange(width)).ravel()
+        ends = np.cumsum([width * len(part) for part in parts])
         self._fronts = _fronts(csc_array(matrix[self._order][:, self._order]), ends.tolist())
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Return the solutions for right-hand sides, shape (3 n,) or (3 n, k)."""
+        """Return the solutions for right-hand sides, shape (c n,) or (c n, k)."""
         x = np.atleast_2d(right.T).T[self._order]
         for front in self._fronts:
             part = dtrsm(1.0, front.own, x[front.begin : front.end], lower=1)
@@ -107,9 +108,10 @@ def _add_lower(target: np.ndarray, at: np.ndarray, part: np.ndarray) -> None:
 def dissection(matrix: csc_array, points: np.ndarray) -> list[np.ndarray]:
     """Return the nodes in parts, in the order of elimination: a separator of two halves comes after both.
 
-    `matrix` of shape (3 n, 3 n), `points` of shape (n, 3).
+    `matrix` of shape (c n, c n), `points` of shape (n, 3).
     """
-    blocks = matrix.tobsr((3, 3))
+    width = max(1, matrix.shape[0] // max(1, len(points)))
+    blocks = matrix.tobsr((width, width))
     entries = np.ones(len(blocks.indices), dtype=np.int8), blocks.indices, blocks.indptr
     graph = csr_array(entries, shape=(len(points), len(points)))
     parts: list[np.ndarray] = []

@@ -8,7 +8,16 @@ from pathlib import Path
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import AfterValidator, Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
@@ -79,6 +88,12 @@ class Thickness(Described):
         heights = nodes @ along
         middle = (heights.min() + heights.max()) / 2
         return points + (scale - 1) * np.outer(points @ along - middle, along)
+
+
+LengthOrStretch = Annotated[
+    Annotated[si.PositiveLength, Tag("float")] | Annotated[Thickness, Tag("stretch")],
+    Discriminator(lambda found: "stretch" if isinstance(found, Thickness) else "float"),
+]
 
 
 class Sphere(Described):
@@ -184,20 +199,37 @@ class UpTo(Described):
         return found
 
 
+def _of_mapping(described: type[Described], found: object, info: ValidationInfo) -> object:
+    """Return the description in a mapping, and anything else as it is. Raises ValueError with one sentence."""
+    if not isinstance(found, dict):
+        return found
+    try:
+        return described.model_validate(found, context=info.context)
+    except ValidationError as error:
+        raise ValueError(sentence(error)) from None
+
+
 class FlexibleBody(Described):
     """Flexible body: a finite element model with interfaces, reduced by the Hurty-Craig-Bampton method.
 
-    A mesh needs a material; its elements are solids.
+    A mesh needs a material; its elements are solids, or shells with a thickness.
     """
 
-    mesh: str | None = Field(None, description="file of a mesh of tetrahedra, hexahedra, wedges or pyramids")
+    mesh: str | None = Field(
+        None, description="file of a mesh of tetrahedra, hexahedra, wedges or pyramids, or of shells"
+    )
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
     material: Material | None = Field(None, description="material of a mesh")
     materials: dict[str, Material] | None = Field(
         None, description="materials by groups of the mesh's elements, in place of one material"
     )
-    thickness: Thickness | None = Field(None, description="stretch of a mesh along its thickness")
+    thickness: LengthOrStretch | None = Field(
+        None, description="of the shells of a mesh, m, or stretch of a mesh of solids along its thickness"
+    )
+    thicknesses: dict[str, si.PositiveLength] | None = Field(
+        None, description="thicknesses by groups of the mesh's shells, m, in place of one thickness"
+    )
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
@@ -206,14 +238,15 @@ class FlexibleBody(Described):
         False, description="static correction: add the displacements under uniform accelerations to the modes"
     )
 
+    @field_validator("thickness", mode="before")
+    @classmethod
+    def _length_or_stretch(cls, found: object, info: ValidationInfo) -> object:
+        return _of_mapping(Thickness, found, info)
+
     @field_validator("modes", mode="before")
     @classmethod
     def _count_or_frequency(cls, found: object, info: ValidationInfo) -> object:
-        if isinstance(found, dict):
-            try:
-                return UpTo.model_validate(found, context=info.context)
-            except ValidationError as error:
-                raise ValueError(sentence(error)) from None
+        found = _of_mapping(UpTo, found, info)
         if not isinstance(found, UpTo) and (isinstance(found, bool) or not isinstance(found, int) or found < 0):
             raise ValueError(f"found {written(found)}, expected a number of modes, or up_to: a frequency")
         return found
@@ -230,13 +263,26 @@ class FlexibleBody(Described):
                 f"found {found}, expected {'E, nu and density for a mesh' if self.mesh else 'none: K and M have it'}"
                 f"{', in one of them' * (len(given) > 1)}"
             )
-        if self.thickness is not None and self.mesh is None:
+        given = [name for name in ("thickness", "thicknesses") if getattr(self, name)]
+        if given and self.mesh is None:
             raise ValueError("found a thickness with matrices, expected a mesh")
+        if len(given) > 1:
+            raise ValueError("found thickness and thicknesses, expected one of them")
         if self.stiffening is True and self.mesh is None:
             raise ValueError(
                 "found stiffening: true with matrices, expected a mesh: geometric stiffening needs its shape functions"
             )
         return self
+
+    @property
+    def stretch(self) -> Thickness | None:
+        """Stretch of a mesh of solids."""
+        return self.thickness if isinstance(self.thickness, Thickness) else None
+
+    @property
+    def shells(self) -> float | dict[str, float] | None:
+        """Thickness of shells, m, of all or by groups of elements; None for solids and matrices."""
+        return self.thicknesses or (None if isinstance(self.thickness, Thickness) else self.thickness)
 
     @property
     def is_stiffened(self) -> bool:
@@ -277,9 +323,9 @@ class FlexibleBody(Described):
 
     def interfaces_on(self, model: FiniteElements) -> list[Interface]:
         """Return the interfaces on a model. Raises InputError."""
-        if self.thickness is None:
+        if self.stretch is None:
             return [interface.on(name, model) for name, interface in self.interfaces.items()]
-        stretch, scale = self.thickness.moved, self.thickness.scale
+        stretch, scale = self.stretch.moved, self.stretch.scale
         before = replace(model, nodes=stretch(model.nodes, model.nodes, 1 / scale))
         found = (interface.on(name, before) for name, interface in self.interfaces.items())
         return [replace(each, point=stretch(each.point[None], model.nodes, scale)[0]) for each in found]
@@ -301,11 +347,12 @@ class FlexibleBody(Described):
                 return from_archive(contents[0], *units)
             from .mesh import from_mesh
 
-            stretch, materials = self.thickness, self.material or self.materials
+            stretch, materials = self.stretch, self.material or self.materials
             assert materials is not None
             return from_mesh(
                 folder / self.files[0], units[0], materials,
                 (lambda nodes: nodes) if stretch is None else (lambda nodes: stretch.moved(nodes, nodes, stretch.scale)),
+                self.shells,
             )  # fmt: skip
 
     def contents(self, folder: Path) -> list[bytes]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
-from .finite_elements import PRECISION, FiniteElements, rigid_displacements
+from .finite_elements import DISPLACEMENTS, PRECISION, FiniteElements, rigid_motions
 
-AVERAGE, POINT = "average", "point"
+AVERAGE, POINT, RIGID = "average", "point", "rigid"
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,16 +30,21 @@ class Interface:
         return 3 if self.kind == POINT else 6
 
     @property
-    def entries(self) -> np.ndarray:
-        """Displacements of its nodes among those of the body."""
-        return (3 * self.nodes[:, None] + np.arange(3)).ravel()
+    def turns_nodes(self) -> bool:
+        """True if it holds the rotations of nodes that have them, not their displacements alone."""
+        return self.kind == RIGID
+
+    def entries(self, model: FiniteElements) -> np.ndarray:
+        """Return the places of the components that it holds among those of the body."""
+        return model.entries(self.nodes) if self.turns_nodes else model.displacements(self.nodes)
 
     def rigid(self, model: FiniteElements) -> np.ndarray:
-        """Return the displacements of its nodes by its coordinates, shape (3 nodes, size)."""
-        return rigid_displacements(model.nodes[self.nodes] - self.point)[:, : self.size]
+        """Return the components of its nodes that it holds by its coordinates, shape (entries, size)."""
+        components = model.components if self.turns_nodes else DISPLACEMENTS
+        return rigid_motions(model.nodes[self.nodes] - self.point, components)[:, : self.size]
 
     def mean(self, model: FiniteElements) -> np.ndarray:
-        """Return its coordinates by the displacements of its nodes in the sense of least squares (RBE3)."""
+        """Return its coordinates by the components that it holds in the sense of least squares (RBE3)."""
         if self.weights is None:
             return np.linalg.pinv(self.rigid(model))
         weighted = self.rigid(model).T * np.repeat(self.weights, 3)
@@ -61,13 +66,14 @@ def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None
         if interface.kind == POINT:
             if len(nodes) > 1:
                 raise InputError(f"interfaces.{name}: found {len(nodes)} nodes, expected one for type: point")
-        else:
+        elif interface.kind == AVERAGE or model.components == DISPLACEMENTS:
             extent = np.linalg.svd(model.nodes[nodes] - model.nodes[nodes].mean(axis=0), compute_uv=False)
             if len(nodes) < 3 or extent[1] <= PRECISION * extent[0]:
                 count = f"{len(nodes)} node{'s' if len(nodes) > 1 else ''}{' on one line' if len(nodes) > 1 else ''}"
+                also = " or type: rigid" if model.components > DISPLACEMENTS else ""
                 raise InputError(
                     f"interfaces.{name}: found {count}, expected three or more that are not on one line, "
-                    "or one with type: point"
+                    f"or one with type: point{also}"
                 )
         for node in nodes.tolist():
             if node in owner:

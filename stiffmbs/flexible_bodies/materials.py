@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
 """Cell data of meshio with the physical groups of Gmsh, and with the properties of Nastran's elements."""
-UNNAMED = {PHYSICAL: "physical ", PROPERTY: "PSOLID "}
+SOLIDS, SHELLS = "solid", "shell"
+UNNAMED = {SOLIDS: {PHYSICAL: "physical ", PROPERTY: "PSOLID "}, SHELLS: {PHYSICAL: "physical ", PROPERTY: "PSHELL "}}
 """Names of groups of elements that have a number alone."""
 
 
@@ -41,38 +42,58 @@ def of_elements(
     """
     if not isinstance(materials, Mapping):
         return ElementMaterials(*(np.full(len(cells), x) for x in (materials.E, materials.nu, materials.density)))
-    found = np.full((3, len(cells)), np.nan)
-    for name, material in materials.items():
+    by_groups = {name: (material.E, material.nu, material.density) for name, material in materials.items()}
+    return ElementMaterials(*_by_groups("materials", by_groups, groups, cells))
+
+
+def thickness_of_elements(
+    thickness: float | Mapping[str, float], groups: Mapping[str, np.ndarray], cells: np.ndarray
+) -> np.ndarray:
+    """Return the thickness of each shell, m; parameters as `of_elements`."""
+    if not isinstance(thickness, Mapping):
+        return np.full(len(cells), thickness)
+    return _by_groups("thicknesses", {name: (each,) for name, each in thickness.items()}, groups, cells)[0]
+
+
+def _by_groups(
+    key: str, given: Mapping[str, Sequence[float]], groups: Mapping[str, np.ndarray], cells: np.ndarray
+) -> np.ndarray:
+    """Return the numbers of each element, by rows, from those of its group. `key`: that of the groups in the description."""
+    found = np.full((len(next(iter(given.values()))), len(cells)), np.nan)
+    for name, numbers in given.items():
         own = groups.get(name, np.empty(0, dtype=np.int64))
-        _refuse(own[~np.isnan(found[0, own])], f"of the group {name} in another group as well", cells)
-        found[:, own] = np.array([[material.E], [material.nu], [material.density]])
-    _refuse(np.flatnonzero(np.isnan(found[0])), f"in none of the groups {', '.join(materials)}", cells)
-    return ElementMaterials(*found)
+        _refuse(key, own[~np.isnan(found[0, own])], f"of the group {name} in another group as well", cells)
+        found[:, own] = np.array(numbers)[:, None]
+    _refuse(key, np.flatnonzero(np.isnan(found[0])), f"in none of the groups {', '.join(given)}", cells)
+    return found
 
 
-def refuse_unknown(materials: Material | Mapping[str, Material], groups: Collection[str]) -> None:
-    """Raise an InputError if there is no group of elements for a material."""
-    for name in materials if isinstance(materials, Mapping) else ():
+def refuse_unknown(key: str, given: object, groups: Collection[str], what: str) -> None:
+    """Raise an InputError if there is no group of elements for a material or a thickness.
+
+    `given`: one of all elements, or by groups. `what`: `SOLIDS` or `SHELLS`.
+    """
+    for name in given if isinstance(given, Mapping) else ():
         if name not in groups:
             raise InputError(
-                f"materials.{name}: found no group of solid elements '{name}'{did_you_mean(name, groups)}, expected one of the file "
+                f"{key}.{name}: found no group of {what} elements '{name}'{did_you_mean(name, groups)}, expected one of the file "
                 f"({', '.join(groups) or 'none'})"
             )
 
 
-def _refuse(elements: np.ndarray, where: str, cells: np.ndarray) -> None:
+def _refuse(key: str, elements: np.ndarray, where: str, cells: np.ndarray) -> None:
     if len(elements):
         nodes = ", ".join(map(str, cells[elements[0]]))
         raise InputError(
-            f"materials: found {len(elements)} elements {where}, the first with nodes {nodes}, expected each element in one group"
+            f"{key}: found {len(elements)} elements {where}, the first with nodes {nodes}, expected each element in one group"
         )
 
 
-def element_groups(mesh: meshio.Mesh, kind: str) -> dict[str, np.ndarray]:
-    """Return the numbers of the elements of one kind in each group: sets, physical volumes of Gmsh, properties of Nastran.
+def element_groups(mesh: meshio.Mesh, kind: str, what: str) -> dict[str, np.ndarray]:
+    """Return the numbers of the elements of one kind in each group: sets, physical groups of Gmsh, properties of Nastran.
 
     Elements are numbered in the order of the blocks of their kind. Groups without a name are called
-    ``physical 2`` or ``PSOLID 2``, by their number.
+    ``physical 2``, ``PSOLID 2`` or ``PSHELL 2``, by their number. `what`: `SOLIDS` or `SHELLS`.
     """
     names = {(tag, dimension): name for name, (tag, dimension) in mesh.field_data.items()}
     found: dict[str, list[np.ndarray]] = {}
@@ -83,7 +104,7 @@ def element_groups(mesh: meshio.Mesh, kind: str) -> dict[str, np.ndarray]:
         for name, of_blocks in mesh.cell_sets.items():
             if len(of_blocks[k]):
                 found.setdefault(name, []).append(first + np.asarray(of_blocks[k], dtype=np.int64))
-        for data, unnamed in UNNAMED.items():
+        for data, unnamed in UNNAMED[what].items():
             tags = np.asarray(mesh.cell_data[data][k]) if data in mesh.cell_data else np.empty(0, dtype=np.int64)
             for tag in np.unique(tags).tolist():
                 name = names.get((tag, block.dim), f"{unnamed}{tag}")
@@ -92,16 +113,16 @@ def element_groups(mesh: meshio.Mesh, kind: str) -> dict[str, np.ndarray]:
     return {name: np.concatenate(parts) for name, parts in found.items()}
 
 
-def parts_of(path: Path, mesh: meshio.Mesh, groups: Sequence[Mapping[str, np.ndarray]]) -> str:
+def parts_of(path: Path, mesh: meshio.Mesh, groups: Sequence[Mapping[str, np.ndarray]], what: str) -> str:
     """Return the names of parts that may have materials of their own; empty if there are fewer than two.
 
-    These are the materials of the sections of an Abaqus or Nastran file, or physical volumes of Gmsh that share no element.
-    `groups`: elements of each group, by kinds of elements.
+    These are the materials of the sections of an Abaqus or Nastran file, or physical groups of Gmsh that share no element.
+    `groups`: elements of each group, by kinds of elements. `what`: `SOLIDS` or `SHELLS`.
     """
-    parts = materials_of_sections(path)
+    parts = materials_of_sections(path, what)
     if PHYSICAL in mesh.cell_data:
         names = dict.fromkeys(name for of_kind in groups for name in of_kind)
-        parts = [name for name in names if name in mesh.field_data or name.startswith(UNNAMED[PHYSICAL])]
+        parts = [name for name in names if name in mesh.field_data or name.startswith(UNNAMED[what][PHYSICAL])]
         for of_kind in groups:
             elements = np.concatenate([of_kind.get(name, np.empty(0, dtype=np.int64)) for name in parts])
             if len(np.unique(elements)) < len(elements):

@@ -25,17 +25,18 @@ def check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
         "enb,nap->epab", nodes[cells[:, : len(shape.corners)]], linear.slopes(linear.nodes.T), optimize=True
     )
     flat = np.linalg.det(edges) <= FLAT * np.linalg.norm(edges, axis=3).prod(axis=2)
-    _refuse(
-        flat.any(axis=1), "inverted or flat elements", cells[:, : len(shape.corners)], "elements of positive volume"
-    )
+    refuse(flat.any(axis=1), "inverted or flat elements", cells[:, : len(shape.corners)], "elements of positive volume")
 
 
-def check_repeated(cells: np.ndarray, kind: str) -> None:
-    """Refuse elements between the same nodes as others: their mass and stiffness would count twice."""
-    corners = np.sort(cells[:, : len(ELEMENTS[kind].shape.corners)], axis=1)
+def check_repeated(corners: np.ndarray) -> None:
+    """Refuse elements between the same nodes as others: their mass and stiffness would count twice.
+
+    `corners` of shape (elements, corners): nodes at the corners of elements of one kind.
+    """
+    cells, corners = corners, np.sort(corners, axis=1)
     repeated = np.ones(len(cells), dtype=bool)
     repeated[np.unique(corners, axis=0, return_index=True)[1]] = False
-    _refuse(repeated, "elements between the same nodes as others", cells, "each element once")
+    refuse(repeated, "elements between the same nodes as others", cells, "each element once")
 
 
 def check_jacobians(block: Block) -> None:
@@ -44,10 +45,10 @@ def check_jacobians(block: Block) -> None:
     volumes = np.linalg.det(block.jacobians(np.column_stack([element.nodes.T, element.rule()[0]])))
     bad = ~(volumes > FLAT * np.abs(volumes).max(axis=1, keepdims=True)).all(axis=1)
     expected = "elements of positive volume; are nodes on their edges misplaced?"
-    _refuse(bad, "elements that are inverted or flat in places", block.nodes.T, expected)
+    refuse(bad, "elements that are inverted or flat in places", block.nodes.T, expected)
 
 
-def _refuse(bad: np.ndarray, what: str, nodes: np.ndarray, expected: str) -> None:
+def refuse(bad: np.ndarray, what: str, nodes: np.ndarray, expected: str) -> None:
     """Refuse elements that are bad, if there are any; the message names the nodes of the first."""
     if bad.any():
         raise InputError(

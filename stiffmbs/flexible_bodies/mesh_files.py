@@ -12,6 +12,8 @@ from ..errors import InputError
 NASTRAN, ABAQUS = {".bdf", ".fem", ".nas"}, ".inp"
 """Suffixes of Nastran and Abaqus files."""
 MASSES = {"CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4"}
+SURFACES = {"CTRIA3": 3, "CTRIAR": 3, "CQUAD4": 4, "CQUADR": 4}
+"""Corners of the shells of Nastran of first order."""
 BULK = "BEGIN BULK"
 BULK_LINE = re.compile(r"^\s*BEGIN BULK", re.MULTILINE)
 GMSH = ".msh"
@@ -46,13 +48,38 @@ def for_reader(path: Path) -> tuple[Path | io.StringIO, str | None]:
     if suffix not in {*NASTRAN, ABAQUS}:
         return path, "gmsh" if suffix == GMSH else None  # not of Ansys Fluent: that reader may not end
     text = path.read_text(encoding="utf-8", errors="replace")
-    if suffix in NASTRAN and not BULK_LINE.search(text):
-        return io.StringIO(f"{BULK}\n{text}"), "nastran"
+    if suffix in NASTRAN:
+        lines = "\n".join(_without_angles(text.splitlines())) + "\n"
+        return io.StringIO(lines if BULK_LINE.search(text) else f"{BULK}\n{lines}"), "nastran"
     if suffix == ABAQUS:
         found = io.StringIO("\n".join(_without_sets(_lines(path))) + "\n")
         found.name = str(path)
         return found, "abaqus"
     return path, None
+
+
+def _without_angles(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the lines of a Nastran file, shells with their nodes alone. Raises InputError for offsets and nodal thicknesses.
+
+    The reader takes angles of materials and offsets for nodes.
+    """
+    shell = ""
+    for line in lines:
+        card = line[:8].partition(",")[0].strip().upper()
+        if shell and (line.startswith(("+", ",")) or (line.strip() and not line[:8].strip())):  # the rest of the card
+            if NOT_ZERO.search(line[8:] if "," not in line else line.partition(",")[2]):
+                raise InputError(f"found {shell} with thicknesses at its nodes, expected one thickness of each element")
+            continue
+        shell = ""
+        if card in SURFACES:
+            fields = line.split(",") if "," in line else [line[k : k + 8] for k in range(0, 72, 8)]
+            kept, shell = 3 + SURFACES[card], f"{card} {fields[1].strip()}"
+            if len(fields) > kept + 1 and NOT_ZERO.match(fields[kept + 1]):
+                raise InputError(
+                    f"found {shell} with an offset of {fields[kept + 1].strip()}, expected nodes in the middle surface"
+                )
+            line = ",".join(fields[:kept]) if "," in line else line[: 8 * kept]
+        yield line
 
 
 def _without_sets(lines: Iterable[str]) -> Iterator[str]:
@@ -65,16 +92,16 @@ def _without_sets(lines: Iterable[str]) -> Iterator[str]:
             yield GMSH_SURFACES.sub(lambda found: found[1] + SAME_SURFACE[found[2].upper()], line)
 
 
-def materials_of_sections(path: Path) -> list[str]:
-    """Return the materials that the sections of solids in an Abaqus or Nastran file have, each once."""
+def materials_of_sections(path: Path, what: str) -> list[str]:
+    """Return the materials that the sections of an Abaqus or Nastran file have, each once. `what`: solid or shell."""
     suffix, found = path.suffix.lower(), []
     if suffix == ABAQUS:
         for words in (line.replace(" ", "").upper().split(",") for line in _lines(path)):
-            if words[0] == "*SOLIDSECTION":
+            if words[0] == f"*{what.upper()}SECTION":
                 found += [word.removeprefix("MATERIAL=") for word in words if word.startswith("MATERIAL=")]
     elif suffix in NASTRAN:
         for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-            if line[:6].upper() == "PSOLID":
+            if line[:6].upper() == f"P{what.upper()}":
                 found.append(f"MAT {_fields(line)[2].strip()}")
     return list(dict.fromkeys(found))
 
@@ -107,6 +134,13 @@ def _check_abaqus(path: Path) -> None:
     for line in _lines(path):
         words = line.replace(" ", "").upper().split(",")
         instances += words[0] == "*INSTANCE"
+        offset = next((word for word in words if word.startswith("OFFSET=")), "")
+        if words[0] == "*SHELLSECTION" and NOT_ZERO.match(
+            offset.removeprefix("OFFSET=").replace("SNEG", "1").replace("SPOS", "1")
+        ):
+            raise InputError(
+                f"found '{line.strip()}', expected shells whose nodes are in the middle surface, without an offset"
+            )
         if words[0] == "*SYSTEM" or (
             words[0] == "*NODE" and any(word.startswith("SYSTEM=") and word != "SYSTEM=R" for word in words)
         ):

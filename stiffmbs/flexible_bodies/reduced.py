@@ -65,7 +65,8 @@ def _check_mass(body: FlexibleBody, mass: float) -> None:
 @cache
 def _reduction() -> str:
     """Return a digest of the reduction."""
-    own = digest_of(python_files(Path(__file__).parent))
+    folder = Path(__file__).parent
+    own = digest_of([*python_files(folder), *python_files(folder / "shells")])
     return entries.digest(own, installed_version("numpy"), installed_version("scipy"))
 
 

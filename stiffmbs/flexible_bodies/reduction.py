@@ -16,9 +16,10 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, inv, null_space
 
 from ..errors import InputError
-from .finite_elements import PRECISION, FiniteElements, rigid_displacements
+from .finite_elements import DISPLACEMENTS, PRECISION, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order
+from .shells.curvature import coarseness
 from .static_solver import StaticSolver
 
 SAME_FREQUENCY = 1e-9
@@ -32,6 +33,8 @@ ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
 FIRST_ORDER = {"tetra": "tetra10", "hexahedron": "hexahedron20", "wedge": "wedge15"}
 """Elements of first order, and those of second order in their place."""
+COARSE = 1.0
+"""Coarseness of shells above which a note tells so: the deflection of a hemisphere is 4 % too small."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
 
@@ -44,7 +47,8 @@ class ReducedBody:
     centre: np.ndarray  # shape (3,): centre of mass in the coordinates of the mesh
     inertia: np.ndarray  # shape (3, 3): about the centre of mass, in the axes of the mesh
     frequencies: np.ndarray  # shape (n,): natural frequencies of the free reduced body, Hz, without the six rigid modes
-    modes: np.ndarray  # shape (3 nodes, n): displacements of these modes with unit modal mass
+    # shape (components nodes, n): displacements, in shells also rotations, of these modes with unit modal mass
+    modes: np.ndarray
     rigid_frequencies: np.ndarray  # shape (6,): computed frequencies of the rigid modes, Hz: zero but for rounding
     fixed_frequencies: np.ndarray  # shape (m,): natural frequencies with all interfaces held, Hz
     effective_mass: np.ndarray  # shape (m, 3): effective mass of these along x, y and z, as fraction of the mass
@@ -62,10 +66,27 @@ class ReducedBody:
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
     elements: str  # types of the elements of a mesh, in the words of meshio; empty for matrices
     parts: str  # names of parts of one material to which the file may give several; empty if there are none
+    components: int  # of a node in the modes: three displacements, or six with its rotation
+    coarseness: (
+        float  # square of the side of elements over radius and thickness of shells with two curvatures; zero for others
+    )
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes."""
+        return len(self.modes) // self.components
+
+    @property
+    def displacements(self) -> np.ndarray:
+        """Displacements of the nodes by the modes, shape (nodes, 3, n)."""
+        return self.modes.reshape(self.nodes, self.components, -1)[:, :DISPLACEMENTS]
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return notes on elements of first order, too stiff in bending (shear locking), and on one material of several parts."""
+        """Return notes on elements that are too stiff in bending, and on one material of several parts.
+
+        Solids of first order are too stiff by shear locking, large flat elements of curved shells by membrane locking.
+        """
         found = []
         better = [FIRST_ORDER[kind] for kind in self.elements.split(", ") if kind in FIRST_ORDER]
         if better:
@@ -77,6 +98,11 @@ class ReducedBody:
             found.append(
                 f"the file of its mesh tells apart {self.parts}, which all have the one material of the description; "
                 "'materials' gives each group of elements its own"
+            )
+        if self.coarseness > COARSE:
+            found.append(
+                f"its mesh has shells with two curvatures and elements of {np.sqrt(self.coarseness):.2g} times the root of radius and "
+                "thickness, which may be too stiff in bending; expected less than 1"
             )
         return tuple(found)
 
@@ -122,9 +148,9 @@ class ReducedBody:
         return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
 
     def energy_under(self, load: np.ndarray, rigid: np.ndarray) -> float:
-        """Return the strain energy by a static load on all nodes, shape (3 nodes,), with all interfaces held, J.
+        """Return the strain energy by a static load on all nodes, shape (components nodes,), with all interfaces held, J.
 
-        `rigid` of shape (3 nodes, 6): rigid motions about the centre of mass.
+        `rigid` of shape (components nodes, 6): rigid motions about the centre of mass.
         """
         of_unit_mass, free, stiffness = self._held(range(len(self.sizes)))
         along = free.T @ np.append(of_unit_mass.T @ (rigid.T @ load), self.modes.T @ load)
@@ -181,7 +207,8 @@ def reduce(
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
         second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
-        model.parts,
+        model.parts, model.components,
+        0.0 if model.shell is None else coarseness(model.shell, model.cells.values()),
     )  # fmt: skip
 
 
@@ -204,7 +231,7 @@ def rigid_body(model: FiniteElements) -> tuple[float, np.ndarray, np.ndarray]:
 
 
 def _coordinates(model: FiniteElements, interfaces: Sequence[Interface], shapes: np.ndarray) -> list[np.ndarray]:
-    return [interface.mean(model) @ shapes[interface.entries] for interface in interfaces]
+    return [interface.mean(model) @ shapes[interface.entries(model)] for interface in interfaces]
 
 
 def _holds(model: FiniteElements, interfaces: Sequence[Interface], rigid: np.ndarray) -> bool:
@@ -223,7 +250,7 @@ def static_solver(
 ) -> tuple[StaticSolver, bool]:
     """Return the static solver of a body, and whether its interfaces hold it; otherwise its mean motion is held, too.
 
-    `rigid` of shape (3 n, 6): rigid motions about the centre of mass. Raises InputError.
+    `rigid` of shape (size, 6): rigid motions about the centre of mass. Raises InputError.
     """
     held, supports = _holds(model, interfaces, rigid), np.empty((len(rigid), 0))
     if not held:
@@ -270,7 +297,8 @@ def _separated(model: FiniteElements, squares: np.ndarray, modes: np.ndarray) ->
 
     Such combinations are determined by rounding otherwise. These are symmetric or antisymmetric if the body is.
     """
-    weights = np.tile(DIRECTIONS, len(modes) // 3)[:, None]
+    of_node = np.append(DIRECTIONS, np.zeros(model.components - DISPLACEMENTS))
+    weights = np.tile(of_node, len(model.nodes))[:, None]
     found, last = modes.copy(), 0
     ends = np.flatnonzero(np.diff(squares, append=np.inf) > SAME_FREQUENCY * squares) + 1
     for end in ends.tolist():
@@ -297,13 +325,18 @@ def _marker_modes(model: FiniteElements, interfaces: Sequence[Interface], modes:
 def _moments(model: FiniteElements, centre: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return first moments, moments with the position, and moments of pairs of modes by their nodes' masses."""
     count, n = len(model.nodes), modes.shape[1]
-    by_mass = (model.mass @ modes).reshape(count, 3, n)
-    points = model.nodes - centre
-    between = model.mass[::3, ::3]
-    shapes = modes.reshape(count, 3, n)
-    weighted = (between @ shapes.reshape(count, 3 * n)).reshape(count, 3, n)
-    return (
-        by_mass.sum(axis=0).T,
-        np.einsum("ia,ibk->kab", points, by_mass),
-        np.einsum("ial,ibk->lkab", shapes, weighted, optimize=True),
+    by_mass, shapes = (
+        each.reshape(count, model.components, n)[:, :DISPLACEMENTS] for each in (model.mass @ modes, modes)
     )
+    points = model.nodes - centre
+    between = model.mass[:: model.components, :: model.components]
+    weighted = (between @ shapes.reshape(count, 3 * n)).reshape(count, 3, n)
+    moments = np.einsum("ia,ibk->kab", points, by_mass)
+    pairs = np.einsum("ial,ibk->lkab", shapes, weighted, optimize=True)
+    if model.shell is not None:  # points next to the middle surface move by rotations
+        directors = model.shell.directors
+        turned = (directors.turned @ modes).reshape(len(directors.places), DISPLACEMENTS * n)
+        weighted = (directors.moments @ turned).reshape(-1, DISPLACEMENTS, n)
+        moments += np.einsum("ia,ibk->kab", directors.places, weighted, optimize=True)
+        pairs += np.einsum("ial,ibk->lkab", turned.reshape(-1, DISPLACEMENTS, n), weighted, optimize=True)
+    return by_mass.sum(axis=0).T, moments, pairs

@@ -25,11 +25,14 @@ from scipy.linalg import eigh
 
 from .finite_elements import FiniteElements
 from .interfaces import Interface
+from .shells.stress import ShellStress
 from .solid import InitialStress
 from .static_solver import StaticSolver
 
 LOGGER = logging.getLogger(__name__)
 RIGID_MOTIONS: Final = 6
+Stress = InitialStress | ShellStress
+"""Work of the stress of a body on strains of second order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,76 +50,91 @@ def second_order(
     model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, static: np.ndarray, held: bool,
     centre: np.ndarray, modes: np.ndarray,
 ) -> SecondOrder:  # fmt: skip
-    """Return the terms of second order of modes in the mean-axes frame, shape (3 nodes, n).
+    """Return the terms of second order of modes in the mean-axes frame, shape (size, n).
 
-    `static` of shape (3 nodes, coordinates): displacements by unit interface coordinates. `held`: true if held
+    `static` of shape (size, coordinates): displacements by unit interface coordinates. `held`: true if held
     interfaces leave the body no rigid motion. `centre` of shape (3,): centre of mass.
     """
     n = modes.shape[1]
-    if model.solid is None or n == 0:
+    if (model.solid is None and model.shell is None) or n == 0:
         return SecondOrder(np.zeros((n, n, 3)), np.zeros((n, n, 3, 3)), np.zeros((n, 0)), np.zeros((0, n, n)))
     LOGGER.info("computing the geometric stiffening of %d modes", n)
     work = _WorkOfStress(model, interfaces, modes)
-    fields = np.einsum("nf,bc->nbfc", np.column_stack([np.ones(len(model.nodes)), model.nodes - centre]), np.eye(3))
-    loads = model.mass @ fields.reshape(-1, 12)
+    fields = np.einsum("fg,bc->bgfc", np.eye(4), np.eye(3)).reshape(3, 4, 12)  # constant, or linear along one axis
+    loads = model.inertial_forces(fields[:, 0], fields[:, 1:], centre)
     relaxed = solver.held_response(-loads)
-    inertial = np.array([work.of(*each) for each in zip(relaxed.T, loads.T, strict=True)])
-    first, *moments = inertial.reshape(4, 3, n, n)
-    shapes = _static_shapes(model, static, RIGID_MOTIONS if held else 0)
+    first, *moments = work.of(relaxed, loads).reshape(4, 3, n, n)
+    shapes = _static_shapes(model, interfaces, static, held, centre)
     return SecondOrder(
         first.transpose(1, 2, 0), np.array(moments).transpose(2, 3, 0, 1), modes.T @ (model.mass @ shapes),
-        np.array([work.of(shape) for shape in shapes.T]).reshape(-1, n, n),
+        work.of(shapes),
     )  # fmt: skip
 
 
 def displacement_of_second_order(
-    model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, displacement: np.ndarray
+    model: FiniteElements,
+    stress: Stress,
+    interfaces: Sequence[Interface],
+    solver: StaticSolver,
+    displacement: np.ndarray,
 ) -> np.ndarray:
-    """Return the part of second order of a displacement, shape (3 nodes,), with held interfaces."""
-    assert model.solid is not None
+    """Return the part of second order of a displacement, shape (size,), with held interfaces. `stress`: `stress_of` the model."""
     turned = np.zeros(len(displacement))
     for interface in interfaces:
         if interface.size == RIGID_MOTIONS:
-            turn = interface.mean(model)[3:] @ displacement[interface.entries]
+            turn = interface.mean(model)[3:] @ displacement[interface.entries(model)]
             arm = model.nodes[interface.nodes] - interface.point
-            turned[interface.entries] = np.cross(turn, np.cross(turn, arm)).ravel() / 2
-    force = model.solid.second_order_force(displacement) + model.stiffness @ turned
+            turned[model.displacements(interface.nodes)] = np.cross(turn, np.cross(turn, arm)).ravel() / 2
+    force = stress.second_order_force(displacement) + model.stiffness @ turned
     return turned - solver.held_response(force)
 
 
-def _static_shapes(model: FiniteElements, static: np.ndarray, rigid: int) -> np.ndarray:
-    """Return combinations of static displacements with unit strain energies, without rigid motions, shape (3 nodes, r)."""
-    if static.shape[1] <= rigid:
-        return static[:, :0]
+def stress_of(model: FiniteElements) -> Stress:
+    """Return what computes the work of stress on strains of second order."""
+    if model.shell is not None:
+        return ShellStress(model.shell)
+    assert model.solid is not None
+    return InitialStress(model.solid)
+
+
+def _static_shapes(
+    model: FiniteElements, interfaces: Sequence[Interface], static: np.ndarray, held: bool, centre: np.ndarray
+) -> np.ndarray:
+    """Return combinations of static displacements with unit strain energies, without rigid motions, shape (size, r)."""
+    if held:  # rotations are multiplied by the size, so that the coordinates of all motions can be compared
+        size = np.ptp(model.nodes, axis=0).max()
+        scale = np.concatenate([np.repeat([1.0, 1 / size], 3)[: each.size] for each in interfaces])
+        rigid = model.rigid_modes(centre) / np.repeat([1.0, size], 3)
+        moved = np.vstack([each.mean(model) @ rigid[each.entries(model)] for each in interfaces]) / scale[:, None]
+        _, _, across = np.linalg.svd(moved.T)
+        static = static @ (scale[:, None] * across[RIGID_MOTIONS:].T)
+    if not static.shape[1]:
+        return static
     stiffness = static.T @ (model.stiffness @ static)
     scale = 1 / np.sqrt(stiffness.diagonal())
     energies, vectors = eigh(scale[:, None] * stiffness * scale)
-    return static @ (scale[:, None] * vectors[:, rigid:] / np.sqrt(energies[rigid:]))  # type: ignore[no-any-return]
+    return static @ (scale[:, None] * vectors / np.sqrt(energies))  # type: ignore[no-any-return]
 
 
 class _WorkOfStress:
     """Work of the stress of displacements on the strains of second order of pairs of modes."""
 
     def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], modes: np.ndarray) -> None:
-        self._model, self._modes = model, modes
-        assert model.solid is not None
-        self._initial_stress = InitialStress(model.solid)
+        self._model, self._modes, self._stress = model, modes, stress_of(model)
         self._turning = [
-            (each.entries, model.nodes[each.nodes] - each.point, each.mean(model)[3:] @ modes[each.entries])
+            (model.displacements(each.nodes), model.nodes[each.nodes] - each.point, each.mean(model)[3:] @ modes[each.entries(model)])
             for each in interfaces
             if each.size == RIGID_MOTIONS
-        ]
+        ]  # fmt: skip
 
-    def of(self, displacement: np.ndarray, load: np.ndarray | float = 0.0) -> np.ndarray:
-        """Return sigma : grad psi_k^T grad psi_l, and the work at turned interfaces of forces there, shape (n, n).
+    def of(self, displacements: np.ndarray, loads: np.ndarray | float = 0.0) -> np.ndarray:
+        """Return sigma : grad psi_k^T grad psi_l, and the work at turned interfaces of forces there, shape (m, n, n).
 
-        The displacement, shape (3 nodes,), causes the stress sigma; its elastic forces and the load act at the interfaces.
+        Each displacement, shape (size, m), causes a stress sigma; its elastic forces and the load act at the interfaces.
         """
-        n = self._modes.shape[1]
-        by_nodes = self._initial_stress.matrix(displacement)
-        found = self._modes.T @ (by_nodes @ self._modes.reshape(-1, 3 * n)).reshape(-1, n)
-        force = self._model.stiffness @ displacement + load
-        for entries, arm, turn in self._turning:
-            moment = arm.T @ force[entries].reshape(-1, 3)
-            found += turn.T @ ((moment + moment.T) / 2 - np.trace(moment) * np.eye(3)) @ turn
-        return (found + found.T) / 2  # type: ignore[no-any-return]
+        works = self._stress.works(displacements, self._modes)
+        for found, force in zip(works, (self._model.stiffness @ displacements + loads).T, strict=True):
+            for entries, arm, turn in self._turning:
+                moment = arm.T @ force[entries].reshape(-1, 3)
+                found += turn.T @ ((moment + moment.T) / 2 - np.trace(moment) * np.eye(3)) @ turn
+        return (works + works.swapaxes(1, 2)) / 2  # type: ignore[no-any-return]

@@ -103,20 +103,9 @@ class Solid:
             factors.append((values, (block.materials.density[:, None] * volumes)[:, None] * values))
         return csr_array(kron(self.pairs.matrix(factors), eye_array(3)))
 
-    def second_order_force(self, displacement: np.ndarray) -> np.ndarray:
-        """Return the nodal forces of the strain of second order G^T G / 2 of a displacement, shape (3 n,)."""
-        found = np.zeros(len(displacement))
-        for block in self.blocks:
-            at, weights = block.gradients()
-            slope = block.displacement_gradient(at, displacement)
-            stress = block.stress(np.einsum("caep,cbep->abep", slope, slope) / 2)
-            force = np.einsum("abep,nbep,ep->nea", stress, at, weights, optimize=True)
-            np.add.at(found, 3 * block.nodes[:, :, None] + np.arange(3), force)
-        return found
-
 
 class InitialStress:
-    """Matrices of initial stress of a body."""
+    """Work of the stress of a body on its strains of second order."""
 
     def __init__(self, solid: Solid) -> None:
         self._solid = solid
@@ -138,6 +127,27 @@ class InitialStress:
             )
             factors.append(tuple(rows))
         return self._solid.pairs.matrix(factors)
+
+    def works(self, displacements: np.ndarray, modes: np.ndarray) -> np.ndarray:
+        """Return the work of the stress of displacements, shape (3 n, k), on strains of second order, shape (k, m, m).
+
+        These are twice the coefficients of products of the coordinates of modes, shape (3 n, m).
+        """
+        m, found = modes.shape[1], []
+        for displacement in displacements.T:
+            by_nodes = self.matrix(displacement)
+            found.append(modes.T @ (by_nodes @ modes.reshape(-1, 3 * m)).reshape(-1, m))
+        return np.array(found).reshape(-1, m, m)
+
+    def second_order_force(self, displacement: np.ndarray) -> np.ndarray:
+        """Return the nodal forces of the strain of second order G^T G / 2 of a displacement, shape (3 n,)."""
+        found = np.zeros(len(displacement))
+        for block, (at, weights) in zip(self._solid.blocks, self._gradients, strict=True):
+            slope = block.displacement_gradient(at, displacement)
+            stress = block.stress(np.einsum("caep,cbep->abep", slope, slope) / 2)
+            force = np.einsum("abep,nbep,ep->nea", stress, at, weights, optimize=True)
+            np.add.at(found, 3 * block.nodes[:, :, None] + np.arange(3), force)
+        return found
 
 
 class NodePairs:

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array, csc_array, csr_array
 
 from ..errors import InputError
 from .cholesky import Cholesky
-from .finite_elements import FiniteElements
+from .finite_elements import DISPLACEMENTS, FiniteElements
 from .interfaces import AVERAGE, Interface
 
 LOGGER = logging.getLogger(__name__)
@@ -28,30 +28,30 @@ DEPENDENT = 1e-15
 class StaticSolver:
     """Factors of the stiffness matrix with interfaces held.
 
-    Nodes of rigid and point interfaces are prescribed. Coordinates of average interfaces are prescribed by equations
-    W u = g of the free displacements u, with multipliers mu:
+    Nodes of rigid and point interfaces are prescribed. Coordinates of average interfaces, and of points whose nodes have
+    rotations, are prescribed by equations W u = g of the free displacements u, with multipliers mu:
 
         K u + W^T mu = f,  K = K_s - E s E^T
 
     The springs s at three nodes, the columns of E, hold the body that average interfaces alone do not, so that K_s is
     positive definite. Their forces r = s E^T u are further unknowns of the small system for mu and r.
 
-    `supports` of shape (3 n, k): further functionals of the displacement that are held, those of a body that its
+    `supports` of shape (size, k): further functionals of the displacement that are held, those of a body that its
     interfaces do not hold. Raises InputError if the stiffness matrix is not positive definite with the interfaces held.
     """
 
     def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], supports: np.ndarray) -> None:
         LOGGER.info("factoring the stiffness matrix of %d nodes", len(model.nodes))
         self._model, self._interfaces = model, interfaces
-        held = [interface.nodes for interface in interfaces if interface.kind != AVERAGE]
+        held = [interface.nodes for interface in interfaces if self._holds_nodes(interface)]
         inner = np.setdiff1d(np.arange(len(model.nodes)), np.concatenate([np.empty(0, dtype=np.int64), *held]))
-        self.free = (3 * inner[:, None] + np.arange(3)).ravel()
+        self.free = model.entries(inner)
         self._functionals = self._held_functionals(supports)
         stiffness = csc_array(model.stiffness[self.free][:, self.free])
         points, springs = model.nodes[inner], np.empty(0, dtype=np.int64)
         if len(self._functionals):
-            springs = (3 * _apart(points)[:, None] + np.arange(3)).ravel()
-            spring = stiffness.diagonal().max()
+            springs = model.displacements(_apart(points))
+            spring = stiffness.diagonal()[model.displacements(np.arange(len(inner)))].max()
             at = (np.full(len(springs), spring), (springs, springs))
             stiffness = csc_array(stiffness + coo_array(at, shape=stiffness.shape))
         try:
@@ -64,13 +64,18 @@ class StaticSolver:
                 "elastic body"
             ) from None
 
+    def _holds_nodes(self, interface: Interface) -> bool:
+        """Return True if an interface prescribes all components of its nodes."""
+        turned = interface.turns_nodes or self._model.components == DISPLACEMENTS
+        return interface.kind != AVERAGE and turned
+
     def _held_functionals(self, supports: np.ndarray) -> np.ndarray:
         """Return the rows W of average interfaces, then those of the supports, by free displacements."""
-        rows = [np.empty((0, 3 * len(self._model.nodes)))]
+        rows = [np.empty((0, self._model.size))]
         for interface in self._interfaces:
-            if interface.kind == AVERAGE:
+            if not self._holds_nodes(interface):
                 rows.append(np.zeros((interface.size, rows[0].shape[1])))
-                rows[-1][:, interface.entries] = interface.mean(self._model)
+                rows[-1][:, interface.entries(self._model)] = interface.mean(self._model)
         return np.vstack([*rows, supports.T])[:, self.free]
 
     def _take_border(self, springs: np.ndarray, spring: float) -> None:
@@ -94,23 +99,23 @@ class StaticSolver:
         return found - self._by_border @ (self._inverse @ gap)  # type: ignore[no-any-return]
 
     def held_response(self, force: np.ndarray) -> np.ndarray:
-        """Return the displacements of all nodes under forces with the interfaces held, both (3 n,) or (3 n, k)."""
+        """Return the displacements of all nodes under forces with the interfaces held, both (size,) or (size, k)."""
         found = np.zeros_like(force)
         found[self.free] = self._solve(force[self.free])
         return found
 
     def static_modes(self) -> np.ndarray:
-        """Return displacements of all nodes by unit interface coordinates, shape (3 n, interface coordinates)."""
+        """Return displacements of all nodes by unit interface coordinates, shape (size, interface coordinates)."""
         total = sum(interface.size for interface in self._interfaces)
-        found, prescribed = np.zeros((3 * len(self._model.nodes), total)), np.zeros((len(self._functionals), total))
+        found, prescribed = np.zeros((self._model.size, total)), np.zeros((len(self._functionals), total))
         column = row = 0
         for interface in self._interfaces:
             columns = slice(column, column + interface.size)
-            if interface.kind == AVERAGE:
+            if not self._holds_nodes(interface):
                 prescribed[row : row + interface.size, columns] = np.eye(interface.size)
                 row += interface.size
             else:
-                found[interface.entries, columns] = interface.rigid(self._model)
+                found[interface.entries(self._model), columns] = interface.rigid(self._model)
             column += interface.size
         found[self.free] = self._solve(-(self._model.stiffness @ found)[self.free], prescribed)
         return found
@@ -119,25 +124,28 @@ class StaticSolver:
         """Return the lowest normal modes with all interfaces held.
 
         These are the squares of their angular frequencies, 1/s^2, in increasing order, shape (count,), and displacements
-        with unit modal mass, kg, shape (3 n, count). Raises InputError if the model has fewer modes.
+        with unit modal mass, kg, shape (size, count). Raises InputError if the model has fewer modes.
         """
-        n = len(self.free)
-        most = n - len(self._functionals)
+        n, mass = len(self.free), self._model.mass[self.free][:, self.free]
+        most = n - len(self._functionals) - self._massless(mass)
         if count > most:
             raise InputError(
                 f"modes: found {count}, expected {most} or fewer: the model has no more with its interfaces held"
             )
-        found = np.zeros((3 * len(self._model.nodes), count))
+        found = np.zeros((self._model.size, count))
         if count == 0:
             return np.empty(0), found
         LOGGER.info("computing %d normal modes", count)
-        mass = self._model.mass[self.free][:, self.free]
         if n <= max(DENSE, 3 * count):
             squares, shapes = _dense_modes(self._solve(mass.toarray()), mass, count)
         else:
             squares, shapes = _lanczos_modes(self._solve, mass, count)
         found[self.free] = shapes
         return squares, found
+
+    def _massless(self, mass: csr_array) -> int:
+        """Return the largest number of rotations without mass: one at each node of a shell."""
+        return 0 if self._model.components == DISPLACEMENTS else mass.shape[0] // self._model.components
 
 
 def _apart(points: np.ndarray) -> np.ndarray:
@@ -150,11 +158,22 @@ def _apart(points: np.ndarray) -> np.ndarray:
 
 
 def _dense_modes(by_mass: np.ndarray, mass: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest modes from the static displacements by the columns of the mass matrix, for small models."""
+    """Return the lowest modes from the static displacements by the columns of the mass matrix, for small models.
+
+    Rotations of shells about their normals have no mass: they follow the motion of all others.
+    """
     work = mass @ by_mass
-    compliances, shapes = eigh((work + work.T) / 2, mass.toarray())
+    work = (work + work.T) / 2
+    values, moving = eigh(mass.toarray())
+    massive = values > DEPENDENT * values[-1]
+    if massive.all():
+        compliances, shapes = eigh(work, mass.toarray())
+    else:
+        moving = moving[:, massive] / np.sqrt(values[massive])
+        compliances, shapes = eigh(moving.T @ work @ moving)
     highest = np.argsort(compliances)[::-1][:count]
-    return 1.0 / compliances[highest], shapes[:, highest]
+    compliances, shapes = compliances[highest], shapes[:, highest]
+    return 1.0 / compliances, shapes if massive.all() else by_mass @ (moving @ shapes) / compliances
 
 
 def _lanczos_modes(

@@ -18,6 +18,8 @@ def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarr
     if the model has no shape functions.
     """
     solid = model.solid
+    if model.shell is not None:
+        raise InputError("found a body of shells, expected a mesh of solids: stresses of shells are not computed")
     if solid is None:
         raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
     stiffest = np.zeros(len(model.nodes))

@@ -15,7 +15,7 @@ from ..elements.spatial.flexible.bodies import FloatingFrame
 from ..errors import InputError, needs
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody, static_solver
-from ..flexible_bodies.second_order import displacement_of_second_order
+from ..flexible_bodies.second_order import displacement_of_second_order, stress_of
 from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
 from ..reading.did_you_mean import did_you_mean
 
@@ -107,15 +107,15 @@ class FlexibleMotion:
             return None
         interfaces = body.interfaces_on(model)
         solver, _ = static_solver(model, interfaces, model.rigid_modes(self.reduced.centre))
-        return partial(displacement_of_second_order, model, interfaces, solver)
+        return partial(displacement_of_second_order, model, stress_of(model), interfaces, solver)
 
     def displacement(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
 
         `nodes`: all by default. `at`: output times by number. The result: shape (times, nodes, 3).
         """
-        chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
-        entries = (3 * chosen[:, None] + np.arange(3)).ravel()
+        chosen = np.arange(self.reduced.nodes) if nodes is None else self._checked(nodes)
+        entries = (self.reduced.components * chosen[:, None] + np.arange(3)).ravel()
         modal = self.modal[at]
         found = modal @ self.reduced.modes[entries].T
         if self._second_order is not None:
@@ -125,7 +125,7 @@ class FlexibleMotion:
 
     def position(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the positions of nodes in ground axes, m; parameters and shape as `displacement`."""
-        chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
+        chosen = np.arange(self.reduced.nodes) if nodes is None else self._checked(nodes)
         own = self.displacement(nodes, at) + self.model.nodes[chosen] - self.reduced.centre
         turned = np.array([rotated(pose[3:], points) for pose, points in zip(self._frame[at], own, strict=True)])
         return self._frame[at][:, None, :3] + turned.reshape(own.shape)
@@ -143,12 +143,12 @@ class FlexibleMotion:
         model, largest = self.model, (0.0, float(self.t[0]))
         rigid = model.rigid_modes(self.reduced.centre)
         solver, _ = static_solver(model, self._source[0].interfaces_on(model), rigid)
-        arms, total = model.nodes - self.reduced.centre, float(self.strain_energy().sum(axis=1).max())
+        total = float(self.strain_energy().sum(axis=1).max())
         for k in {int(np.linalg.norm(self._motion[:, part : part + 3], axis=1).argmax()) for part in (0, 3, 6)}:
             acceleration, w, alpha = self._motion[k].reshape(3, 3)
-            field = rotated(self._frame[k, 3:] * [1, -1, -1, -1], acceleration)
-            field = field + np.cross(alpha, arms) + np.cross(w, np.cross(w, arms))
-            load = -(model.mass @ field.ravel())
+            uniform = rotated(self._frame[k, 3:] * [1, -1, -1, -1], acceleration)
+            gradient = np.cross(alpha, np.eye(3)) + np.cross(w, np.cross(w, np.eye(3)))  # of unit arms, by rows
+            load = -model.inertial_forces(uniform[:, None], gradient.T[:, :, None], self.reduced.centre)[:, 0]
             missing = load @ solver.held_response(load) / 2 - self.reduced.energy_under(load, rigid)
             largest = max(largest, (float(missing / (missing + total or 1.0)), float(self.t[k])))
         return largest
@@ -177,7 +177,7 @@ class FlexibleMotion:
     def peaks(self) -> dict[str, Peak]:
         """Return the largest von Mises and principal stress and the smallest principal stress, with place and time."""
         found: dict[str, Peak] = {}
-        step = max(1, AT_ONCE // max(1, 6 * len(self.reduced.modes) // 3))
+        step = max(1, AT_ONCE // max(1, 6 * self.reduced.nodes))
         for first in range(0, len(self.t), step):
             stress = self.stress(slice(first, first + step))
             principal = principal_stresses(stress)
@@ -226,7 +226,7 @@ class FlexibleMotion:
         return fields
 
     def _checked(self, nodes: Sequence[int]) -> np.ndarray:
-        chosen, count = np.asarray(nodes, dtype=np.int64), len(self.reduced.modes) // 3
+        chosen, count = np.asarray(nodes, dtype=np.int64), self.reduced.nodes
         if chosen.size and not 0 <= chosen.min() <= chosen.max() < count:
             wrong = chosen.max() if chosen.min() >= 0 else chosen.min()
             raise InputError(f"nodes: found node {wrong}, expected 0 to {count - 1}")

@@ -28,7 +28,7 @@ def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], 
 
     `name` is that of the file, and `interfaces` are names; `held` has the natural frequencies, Hz, with some interfaces held.
     """
-    nodes, elastic = len(body.modes) // 3, len(body.frequencies)
+    nodes, elastic = body.nodes, len(body.frequencies)
     interface_modes = int(body.sizes.sum())
     lines = [
         f"{name}: {nodes} nodes, reduced to {elastic} elastic modes",
@@ -65,7 +65,7 @@ def flexible_body_as_dict(
     """Return the report for JSON; parameters as `flexible_body_text`."""
     return {
         "body": name,
-        "nodes": len(body.modes) // 3,
+        "nodes": body.nodes,
         "mass": body.mass,
         "center_of_mass": body.centre.tolist(),
         "inertia": body.inertia.tolist(),
@@ -144,7 +144,7 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
             f"{name:20}{peak['value'] / 1e6:.6g}{bar} MPa at node {peak['node']} ({point} m), {peak['time']:.6g} s"
         )
     if not report["stress"]:
-        lines.append("stress              none: K and M have no shape functions; use a mesh")
+        lines.append("stress              none: only meshes of solids have stresses")
     of_modes = np.array(report["strain_energy"]["by_mode"])
     lines.append(f"{'strain energy':20}{report['strain_energy']['largest']:.6g} J at most")
     for k in np.argsort(of_modes)[::-1][:MOST_FREQUENCIES]:
@@ -161,7 +161,6 @@ def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:
 
     cells = dict(model.cells) or {"vertex": np.arange(len(model.nodes))[:, None]}
     fields = {
-        f"mode {k + 1}: {frequency:.6g} Hz": body.modes[:, k].reshape(-1, 3)
-        for k, frequency in enumerate(body.frequencies)
+        f"mode {k + 1}: {frequency:.6g} Hz": body.displacements[..., k] for k, frequency in enumerate(body.frequencies)
     }
     meshio.Mesh(model.nodes, list(cells.items()), point_data=fields).write(path)

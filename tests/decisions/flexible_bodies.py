@@ -17,6 +17,8 @@ from stiffmbs.flexible_bodies import (
     solid,
     static_solver,
 )
+from stiffmbs.flexible_bodies.shells import checks as shell_checks
+from stiffmbs.flexible_bodies.shells import shell, stress
 from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -45,7 +47,7 @@ def body(asymmetry=0.0, across=0.0):
         "mass": csr_array(np.diag([1.0, 1.0 + across, 1.0])),
     }
     return Record(
-        nodes=np.zeros((1, 3)), _check_parts=nothing, _check_diagonals=nothing, _check_mass=nothing, _check_rigid_modes=nothing,
+        nodes=np.zeros((1, 3)), size=3, components=3, displacements=lambda _: np.arange(3), _check_parts=nothing, _check_diagonals=nothing, _check_mass=nothing, _check_rigid_modes=nothing,
         **matrices,
     )  # fmt: skip
 
@@ -73,7 +75,9 @@ def largest_difference_of_frequencies():
     def are_equal(apart):
         separated = []
         with patch.object(reduction, "eigh", lambda _: separated.append(1) or (None, np.eye(2))):
-            reduction._separated(Record(mass=np.eye(3)), np.array([1.0, 1.0 + apart]), np.eye(3, 2))
+            reduction._separated(
+                Record(mass=np.eye(3), components=3, nodes=range(1)), np.array([1.0, 1.0 + apart]), np.eye(3, 2)
+            )
         return bool(separated)
 
     return count_while(lambda apart: are_equal(1e-11 * apart), DOUBLES)
@@ -100,7 +104,9 @@ def lowest_elastic_frequency():
             _marker_modes=nothing, _moments=lambda *_: (), second_order=nothing, ReducedBody=nothing,
         ):  # fmt: skip
             return refused(
-                lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts=""), [], 1)
+                lambda: reduction.reduce(
+                    Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", components=3, shell=None), [], 1
+                )
             )
 
     return count_while(is_refused, DOUBLES[:40])
@@ -109,7 +115,7 @@ def lowest_elastic_frequency():
 def most_unknowns_of_dense_modes():
     def is_dense(n):
         solver = Record(
-            free=np.arange(n), _functionals=[], _solve=nothing, _model=Record(nodes=range(n // 3 + 1), mass=eye_array(n, format="csr"))
+            free=np.arange(n), _functionals=[], _solve=nothing, _massless=lambda _: 0, _model=Record(size=n, mass=eye_array(n, format="csr"))
         )  # fmt: skip
         with patch.multiple(static_solver, _dense_modes=lambda *_: reach(True), _lanczos_modes=lambda *_: reach(False)):
             return reached(lambda: static_solver.StaticSolver.normal_modes(solver, 1))
@@ -139,7 +145,58 @@ def independent_shapes():
     return count_while(are_two, BELOW)
 
 
+def drilling_without_membrane():
+    """Return the stiffness of a triangle with nu = 0.5 against equal rotations of its corners about its normal."""
+    nodes = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    ones, kind = np.ones(1), "triangle"
+    material = shell.ElementMaterials(ones, 0.5 * ones, ones)
+    stiffness = shell.of_elements(nodes, {kind: np.arange(3)[None]}, {kind: material}, {kind: ones}).stiffness()
+    turned = np.tile([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 3)
+    return float(turned @ (stiffness @ turned))
+
+
+def most_warped_quadrilateral():
+    def accepts(height):
+        nodes = np.array([[0.0, 0.0, height], [1.0, 0.0, -height], [1.0, 1.0, height], [0.0, 1.0, -height]])
+        return not refused(lambda: shell_checks.check_shells(nodes, {"quad": np.arange(4)[None]}))
+
+    return count_while(lambda height: accepts(0.01 * height), DOUBLES)
+
+
+def parts_of_a_shell():
+    one = shell.Shell(*(np.zeros((10**4, *shape)) for shape in ((3,), (3,), (3, 3), (), (), ())))
+    parts = []
+    pairs = Record(zeros=lambda _: reached, add=lambda *_: parts.append(1), columns=0, starts=0)
+    with (
+        patch.multiple(shell, bsr_array=nothing, csr_array=nothing),
+        patch.multiple(shell.Shell, pairs=pairs, _of_triangles=nothing),
+    ):
+        one.stiffness()
+    return len(parts)
+
+
+def most_kept_triangles():
+    def are_kept(count):
+        of = Record(_shell=Record(triangles=range(count)), _kept=True, _computed=lambda: False)
+        return stress.ShellStress.parts(of)
+
+    return count_while(are_kept, (1000 * DOUBLES).astype(int))
+
+
+def coarsest_shell_without_a_note():
+    def is_noted(square):
+        body = Record(coarseness=square, elements="quad", parts="")
+        return bool(reduction.ReducedBody.notes.fget(body))
+
+    return count_while(lambda square: not is_noted(0.1 * square), DOUBLES)
+
+
 DECISIONS = {
+    "flexible_bodies.reduction:COARSE": coarsest_shell_without_a_note,
+    "flexible_bodies.shells.stress:KEPT": most_kept_triangles,
+    "flexible_bodies.shells.shell:LEAST_DRILLING": drilling_without_membrane,
+    "flexible_bodies.shells.shell:WARPED": most_warped_quadrilateral,
+    "flexible_bodies.shells.shell:TOGETHER": parts_of_a_shell,
     "flexible_bodies.cholesky:LARGEST_PART": parts_of_a_chain,
     "flexible_bodies.cholesky:COLUMNS": additions_of_columns,
     "flexible_bodies.finite_elements:SYMMETRY": lambda: count_while(
@@ -168,6 +225,9 @@ DECISIONS = {
     "flexible_bodies.static_solver:DEPENDENT": independent_shapes,
 }  # fmt: skip
 EXPECTED = {
+    "flexible_bodies.reduction:COARSE": 14,
+    "flexible_bodies.shells.stress:KEPT": 20,
+    "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:TOGETHER": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,
     "flexible_bodies.reduced:SAME_MASS": 23,

@@ -121,7 +121,7 @@ def test_inverted_elements_and_shells_are_refused(tmp_path):
     with pytest.raises(InputError, match="inverted or flat elements, the first with nodes"):
         from_mesh(tmp_path / "bar.vtu", 1e-3, STEEL)
     meshio.Mesh(mesh.points, [("quad", mesh.cells_dict["hexahedron"][:, :4])]).write(tmp_path / "shell.vtu")
-    with pytest.raises(InputError, match="found elements of the types quad, expected solids"):
+    with pytest.raises(InputError, match=r"found surfaces \(quad\) without a thickness, expected solids, or"):
         from_mesh(tmp_path / "shell.vtu", 1e-3, STEEL)
 
 

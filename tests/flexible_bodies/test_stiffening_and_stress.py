@@ -14,7 +14,7 @@ from stiffmbs.analyses.run import run
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.reduction import reduce, static_solver
-from stiffmbs.flexible_bodies.second_order import displacement_of_second_order
+from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, stress_of
 from stiffmbs.results.flexible_motion import FlexibleMotion
 
 from .bars import HEIGHT, LENGTH, WIDTH, bar, face, mesh_of_bar
@@ -80,7 +80,7 @@ def test_the_strain_energy_is_that_of_finite_strains_up_to_the_fourth_order(tmp_
     at, weights = block.gradients()
     q = 1e-3 * np.random.default_rng(0).standard_normal(len(body.frequencies)) / (1 + body.frequencies / 200) ** 2
     terms, stiffness = body.second_order, (2 * np.pi * body.frequencies) ** 2
-    of_second_order = displacement_of_second_order(model, interfaces, solver, body.modes @ q)
+    of_second_order = displacement_of_second_order(model, stress_of(model), interfaces, solver, body.modes @ q)
     p = q + terms.static @ np.einsum("ikl,k,l->i", terms.stretch, q, q) / 2
 
     def energy(q, of_second_order):

@@ -34,8 +34,9 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
     body, folder = frame.source
     model, reduced = body.model(folder), reduced_body(body, folder)
     if body.stress_colors and model.solid is None:
+        found = "described by matrices" if model.shell is None else "of shells"
         raise InputError(
-            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body described by matrices, expected a mesh"
+            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body {found}, expected a mesh of solids"
         )
     faces = surface(model)
     if not faces:
@@ -48,7 +49,7 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
         every[: len(of_modes)] = np.sqrt(reduced.mass) * of_modes
         return {modal: every[3 * k : 3 * k + 3] for k, modal in enumerate(frame.modes)}
 
-    shapes = body.deformation_scale * reduced.modes.T.reshape(-1, len(model.nodes), 3)[:, used]
+    shapes = body.deformation_scale * np.moveaxis(reduced.displacements, -1, 0)[:, used]
     stresses = deviatoric(nodal_stresses(model, reduced.modes)[:, used]) if body.stress_colors else None
     solid = Solid(
         model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=by_coordinates(shapes),
@@ -58,7 +59,12 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
 
 
 def surface(model: FiniteElements) -> list[np.ndarray]:
-    """Return the nodes around each face that belongs to one element only, counterclockwise as seen from outside."""
+    """Return the nodes around each face that belongs to one element only, counterclockwise as seen from outside.
+
+    Faces of shells are their elements, in the order of the file.
+    """
+    if model.shell is not None:
+        return [face for cells in model.cells.values() for face in cells]
     every: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
     for kind, cells in model.cells.items():
         middles = model.nodes[cells].mean(axis=1)

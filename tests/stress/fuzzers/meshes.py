@@ -22,6 +22,7 @@ from stiffmbs.flexible_bodies.mesh_files import for_reader
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.flexible_bodies.reduction import ReducedBody
 from tests.flexible_bodies.bars import bar, mesh_of_bar
+from tests.flexible_bodies.shells import surface
 
 from ..case import Outcome, Verdict
 from .files import told
@@ -35,6 +36,8 @@ ENDS = {
 FORMATS = {"msh": "gmsh", "inp": "abaqus", "vtk": "vtk", "bdf": "nastran"}
 COLLAPSED = {"hexahedron": [*range(8)], "wedge": [0, 1, 2, 2, 3, 4, 5, 5], "pyramid": [0, 1, 2, 3, 4, 4, 4, 4]}
 """Corners of hexahedra with the same volume."""
+THICKNESS = 2e-3
+"""Of shells, m."""
 SAME = 1e-6
 """Relative error of masses and frequencies."""
 
@@ -44,7 +47,9 @@ def trial(seed: int) -> Verdict:
     random = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        body, judge = (_of_text, _of_mesh, _of_arrays, _of_matrix_market)[int(random.integers(4))](folder, random)
+        body, judge = (_of_text, _of_mesh, _of_arrays, _of_matrix_market, _of_shells)[int(random.integers(5))](
+            folder, random
+        )
         try:
             return judge(reduced_body(body, folder))
         except StiffmbsError as error:
@@ -159,6 +164,33 @@ def _hexahedra(corners):
         slopes = np.stack([signs[:, a] * np.delete(factors, a, 1).prod(axis=1) / 8 for a in range(3)], axis=1)
         total += np.linalg.det(np.einsum("eni,na->eia", corners, slopes)).sum()
     return total
+
+
+def _of_shells(folder, random):
+    """A mesh of shells with changes of its text."""
+    suffix, kind = str(random.choice(list(FORMATS))), str(random.choice(["quad", "triangle"]))
+    path = folder / f"plate.{suffix}"
+    options = {"binary": False} if suffix in ("msh", "vtk") else {}
+    nodes, cells, _ = surface(4, 2, lambda a, b: (400 * a, 100 * b, 20 * a * b), kind)
+    meshio.write(path, meshio.Mesh(nodes, list(cells.items())), FORMATS[suffix], **options)
+    path.write_text(changed_text(path.read_text(), random))
+    ends = {"a": InterfaceOfNodes(nodes=(0,)), "b": InterfaceOfNodes(nodes=(7,), type="point")}
+    body = FlexibleBody(
+        mesh=path.name, units=Units(length=1e-3), material=STEEL, thickness=THICKNESS, interfaces=ends, modes=2
+    )
+    return body, lambda found: _of_area(found, path)
+
+
+def _of_area(found: ReducedBody, path: Path) -> Verdict:
+    """Compare the mass with the area of the triangles; of quadrilaterals, the mean of those along both diagonals."""
+    mesh = meshio.read(*for_reader(path))
+    area = 0.0
+    for block in mesh.cells:
+        halves = {"triangle": [(0, 1, 2)], "quad": [(0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3)]}.get(block.type, [])
+        for corners in halves:
+            a, b, c = (mesh.points[block.data[:, k]] for k in corners)
+            area += np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / (2 if len(halves) == 1 else 4)
+    return _judged(found, area * 1e-6 * THICKNESS * STEEL.density, 0.0)
 
 
 def _of_arrays(folder, random):

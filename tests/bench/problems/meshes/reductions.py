@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..reductions import Mesh, Reductions
+from ...reductions import Mesh, Reductions
 
 BENCHMARKS = (
     Reductions("reductions", (Mesh("tetra10", 20, 2), Mesh("tetra10", 48, 14), Mesh("tetra", 147, 25))),

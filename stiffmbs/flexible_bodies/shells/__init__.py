@@ -1,0 +1,1 @@
+"""Shells of a mesh: elements, checks and geometric stiffness."""

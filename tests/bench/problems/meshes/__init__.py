@@ -1,0 +1,1 @@
+"""Finite element meshes: reductions, and published shells."""
