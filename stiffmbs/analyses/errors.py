@@ -120,7 +120,8 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
         shared = _shared(trajectory, other.trajectory)
         if last or _takes_other_steps(trajectory, other.trajectory, part, shared):
             break
-        longest = float((shared if len(shared) else _lengths(trajectory)).max(initial=0.0))
+        own = _lengths(trajectory)
+        longest = float(max(shared.max(), own.mean()) if len(shared) else own.max(initial=0.0))
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run {how} ended early; use --verify")
     close = ESTIMATE.close if grid.times is None else 0.0  # own steps may lie just before and after an event
@@ -147,11 +148,15 @@ def _second_run(
 
 
 def _takes_other_steps(trajectory: Trajectory, other: Trajectory, part: float, shared: np.ndarray) -> bool:
-    """Return True if the errors of another run are other ones than those of a run; `shared`: lengths of the steps of both, s."""
+    """Return True if the errors of another run are other ones than those of a run.
+
+    `shared`: lengths of the steps of both, s. Those of implicit runs are the first ones after samples.
+    """
     from ..solve.explicit.dop853 import DOP853
 
     more = _steps(other) > _steps(trajectory) * part ** (-0.5 / DOP853.order)
-    return more and bool(shared.sum() <= ESTIMATE.shared * _lengths(trajectory).sum())
+    few = bool(trajectory.statistics.get("jacobians") or shared.sum() <= ESTIMATE.shared * _lengths(trajectory).sum())
+    return more and few
 
 
 def _lengths(trajectory: Trajectory) -> np.ndarray:
