@@ -212,8 +212,8 @@ def assert_one_sentence(result):
 TEXTS = {
     "empty": ("", "empty scene"),
     "only a comment": ("# nothing\n", "empty scene"),
-    "a list": ("- 1\n", "expected a mapping"),
-    "a word": ("hello", "expected a mapping"),
+    "a list": ("- 1\n", "found a list, expected a scene"),
+    "a word": ("hello", "found text without keys, expected a scene"),
     "no bodies": ("name: x\n", "bodies"),
     "not YAML": ("bodies: {a: [", "line 1"),
     "a tab": ("bodies:\n\tcart: 1\n", "line 2"),
