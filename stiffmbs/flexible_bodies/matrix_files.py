@@ -122,14 +122,14 @@ def _matrix_market(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarr
 
 
 def _op4(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
-    with needs("pyyeti", "flexible"):
+    with np.printoptions(), needs("pyyeti", "flexible"):  # pyYeti sets that of NumPy 1.13
         from pyyeti.nastran import op4
     return op4.read(str(path), sparse=True), {}
 
 
 def _op2(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     """Return the matrices of an OUTPUT2 file, and those of its DMIG tables."""
-    with needs("pyyeti", "flexible"):
+    with np.printoptions(), needs("pyyeti", "flexible"):  # pyYeti sets that of NumPy 1.13
         from pyyeti.nastran import bulk, op2
     with op2.OP2(str(path)) as file:
         matrices = file.rdop2mats()
@@ -141,7 +141,7 @@ def _op2(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
 
 def _punch(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     """Return the DMIG matrices of a punch file; entries of a symmetric matrix are given once."""
-    with needs("pyyeti", "flexible"):
+    with np.printoptions(), needs("pyyeti", "flexible"):  # pyYeti sets that of NumPy 1.13
         from pyyeti.nastran import bulk
     entries: dict[str, list[tuple[int, int, int, int, float]]] = {}
     for name, *card in bulk.rdcards(str(path), "dmig", return_var="list", blank="") or ():

@@ -73,7 +73,7 @@ def _table(path: Path) -> Found:
 
 
 def _nastran(path: Path) -> Found:
-    with needs("pyyeti", "flexible"):
+    with np.printoptions(), needs("pyyeti", "flexible"):  # pyYeti sets that of NumPy 1.13
         from pyyeti.nastran import bulk
     found = bulk.rdgrids(str(path))
     if found is None:

@@ -1,6 +1,8 @@
 """Matrices of finite element programs give the model that has written them; bad files are refused with one sentence."""
 
 import struct
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -131,6 +133,33 @@ def check_same(found, model, digits=1e-12):
     for name in ("stiffness", "mass"):
         own, expected = getattr(found, name), getattr(model, name)
         assert np.abs((own - expected).data).max(initial=0.0) <= digits * np.abs(expected.data).max(), name
+
+
+@pytest.fixture(autouse=True)
+def printed_as_before():
+    """Restore the format of numbers, which pyYeti sets when it is imported."""
+    with np.printoptions():
+        yield
+
+
+def test_numbers_are_printed_as_before(tmp_path):
+    """pyYeti sets the format of NumPy 1.13 for the whole process."""
+    pytest.importorskip("pyyeti")
+    for name in ("stiffness.op4", "nodes.bdf"):
+        (tmp_path / name).write_bytes(b"")
+    program = """
+import sys, numpy as np, stiffmbs
+from pathlib import Path
+from stiffmbs.flexible_bodies.description import FlexibleBody
+before = np.get_printoptions()
+try:
+    files = {"stiffness": "stiffness.op4", "mass": "stiffness.op4", "nodes": "nodes.bdf"}
+    FlexibleBody(matrices=files, units={"length": 1, "mass": 1}).model(Path(sys.argv[1]))
+except Exception:
+    assert "pyyeti" in sys.modules
+assert np.get_printoptions() == before
+"""
+    subprocess.run([sys.executable, "-c", program, str(tmp_path)], check=True)
 
 
 @pytest.mark.parametrize("rotations", [False, True])
