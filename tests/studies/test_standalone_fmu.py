@@ -15,6 +15,7 @@ from stiffmbs import InputError
 from stiffmbs.commands.main import main
 from stiffmbs.studies.fmu.standalone import library
 from stiffmbs.studies.fmu.standalone.library import own_platform
+from stiffmbs.studies.fmu.standalone.model import exported_model
 from tests.stress.fuzzers.fmu import has_compiler
 
 pytest.importorskip("fmpy")
@@ -155,6 +156,15 @@ def test_requests_of_positions_and_velocities_are_outputs(tmp_path, kind):
     for channel, values in zip(channels, found, strict=True):
         size = max(1.0, np.abs(run[channel]).max())
         assert np.abs(np.array(values)[at] - run[channel]).max() <= 1e-6 * size, channel
+
+
+def test_requests_that_are_no_outputs_have_no_effect(tmp_path):
+    """A formula of time is known up to the end of the run; with one, steps beyond it are refused."""
+    scene = tmp_path / "bar.yaml"
+    scene.write_text(MEASURED.replace("pull: fm(pin)", "pull: sin(1000*t)"), encoding="utf-8")
+    data = stiffmbs.load_scene(scene)
+    assert exported_model(data).depends_on_time
+    assert not exported_model(data, ["bar.x", "turned"]).depends_on_time
 
 
 ALONE = """

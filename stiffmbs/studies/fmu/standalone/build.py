@@ -54,7 +54,7 @@ def write_standalone_fmu(
 def _written(scene: Scene, target: Path, identifier: str, outputs: Sequence[str], text: str, version: str) -> Written:
     """Write the FMU with the parameters in use; see `write_standalone_fmu`."""
     of = own_platform()
-    model = exported_model(scene)
+    model = exported_model(scene, outputs)
     chosen, notes = tuple(outputs), model.notes
     if not chosen:
         requests = tuple(scene.outputs())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,13 +127,13 @@ def refused(reason: str) -> str:
 
 
 @registered()
-def exported_model(scene: Scene) -> ExportedModel:
-    """Return the model of a scene for an FMU.
+def exported_model(scene: Scene, outputs: Sequence[str] = ()) -> ExportedModel:
+    """Return the model of a scene for an FMU with some outputs, by default all requests.
 
     Raises InputError for what only an FMU with Python computes.
     """
     given = {name: float(value) for name, value in scene.inputs.items() if isinstance(value, float | int)}
-    written, of_requests = with_reported(scene, written_scene(scene))
+    written, of_requests = with_reported(scene, written_scene(scene), outputs or scene.outputs())
     solver = CaseSolver(Task(written, tuple(f"{OWN_INPUTS}.{name}" for name in given), {}, ()))
     scene = solver.scene([*given.values()])
     job = prepare(scene, changed(scene.run, {"presolve": False}))

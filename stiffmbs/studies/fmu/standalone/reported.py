@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -61,14 +61,15 @@ def registered() -> Iterator[None]:
         yield
 
 
-def with_reported(scene: Scene, written: WrittenScene) -> tuple[WrittenScene, dict[str, str]]:
-    """Return the source of a scene with an element for each request that its formula can be of, and its channel by request.
+def with_reported(scene: Scene, written: WrittenScene, outputs: Collection[str]) -> tuple[WrittenScene, dict[str, str]]:
+    """Return the source of a scene with an element for each request among `outputs`, where possible, and its channel by request.
 
-    Formulas of reactions, accelerations, energies or other requests, and those of parts, cannot.
+    It is not possible for formulas of reactions, accelerations, energies or other requests, and for those of parts. A formula of time
+    bounds the steps, so that only those of outputs have one.
     """
     section, found = written.content.get("requests"), {}
     for number, (name, output) in enumerate(scene.outputs().items()):
-        if not isinstance(section, dict) or name.partition(".")[0] not in section:
+        if not isinstance(section, dict) or name.partition(".")[0] not in section or name not in outputs:
             continue
         element = OF_REQUEST.format(number)
         change = f"forces.{element}", {"type": Reported.kind, "i": next(iter(scene.bodies)), "formula": output.text}
