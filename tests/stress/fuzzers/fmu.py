@@ -6,6 +6,7 @@ import json
 import sys
 import tempfile
 import warnings
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -141,7 +142,8 @@ def _scene(rng: np.random.Generator) -> dict[str, Any]:
     content.setdefault("inputs", {})[GIVEN] = 0.0
     content.setdefault("forces", {})[PUSH] = {"type": "force", "i": body, "force": [f"{GAIN} + {GIVEN}", *zeros]}
     measures = ("dx", "dm", "az", "vm", "wz") if not zeros[1:] else ("dx", "dz", "ax", "az", "vx", "vm", "wz", "wm")
-    own = [f"{measure}({body})" for measure in rng.choice(measures, 2, replace=False)]
+    chosen = deepcopy(rng).choice(measures, 2, replace=False)  # other draws stay the same
+    own = [f"{measure}({body})" for measure in chosen]
     content["requests"] = {"fmu_first": own[0], "fmu_second": f"2*{own[1]} + {GAIN}*{body}.vx"}
     content["run"] |= {"rtol": RTOL, "points": STEPS + 1}
     return content
