@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from ..errors import InputError
@@ -52,15 +51,6 @@ class Registry:
         return {
             kind: found for (sort, space, kind), found in self._classes.items() if (sort, space) == (base, dimensions)
         }
-
-    @contextmanager
-    def including(self, element: type[Element]) -> Iterator[None]:
-        """Register a class within a context."""
-        self.add(element)
-        try:
-            yield
-        finally:
-            self.remove(element)
 
 
 REGISTRY = Registry()

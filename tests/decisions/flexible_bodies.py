@@ -196,7 +196,7 @@ DECISIONS = {
     "flexible_bodies.shells.stress:KEPT": most_kept_triangles,
     "flexible_bodies.shells.shell:LEAST_DRILLING": drilling_without_membrane,
     "flexible_bodies.shells.shell:WARPED": most_warped_quadrilateral,
-    "flexible_bodies.shells.shell:TOGETHER": parts_of_a_shell,
+    "flexible_bodies.shells.shell:AT_ONCE": parts_of_a_shell,
     "flexible_bodies.cholesky:LARGEST_PART": parts_of_a_chain,
     "flexible_bodies.cholesky:COLUMNS": additions_of_columns,
     "flexible_bodies.finite_elements:SYMMETRY": lambda: count_while(
@@ -227,7 +227,7 @@ DECISIONS = {
 EXPECTED = {
     "flexible_bodies.reduction:COARSE": 14,
     "flexible_bodies.shells.stress:KEPT": 20,
-    "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:TOGETHER": 4,
+    "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:AT_ONCE": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,
     "flexible_bodies.reduced:SAME_MASS": 23,

@@ -29,7 +29,7 @@ LEAST_DRILLING = 0.01
 """Smallest factor beta_0 of the stiffness against drilling rotations: it is (1 - 4 nu^2) / 2, zero at nu = 0.5 (Felippa 2003)."""
 WARPED = 0.5
 """Largest angle between the normals of the triangles of a quadrilateral and that of its mean plane, rad."""
-TOGETHER = 3_000
+AT_ONCE = 3_000
 """Triangles whose matrices are computed together; they take 80 MB."""
 
 
@@ -102,8 +102,8 @@ class Shell:
     def stiffness(self) -> csr_array:
         """Return the stiffness matrix, shape (6 n, 6 n)."""
         sums = self.pairs.zeros((COMPONENTS, COMPONENTS))
-        for start in range(0, len(self.triangles), TOGETHER):
-            part = slice(start, start + TOGETHER)
+        for start in range(0, len(self.triangles), AT_ONCE):
+            part = slice(start, start + AT_ONCE)
             self.pairs.add(sums, 0, part, self._of_triangles(part))
         return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts)))
 

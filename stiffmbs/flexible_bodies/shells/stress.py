@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .shell import COMPONENTS, TOGETHER, Shell, Triangles
+from .shell import AT_ONCE, COMPONENTS, Shell, Triangles
 
 KEPT = 30_000
 """Triangles of a shell up to which their strains are kept between displacements; they take 150 MB."""
@@ -65,8 +65,8 @@ class ShellStress:
         return tuple(self._computed())
 
     def _computed(self) -> Iterator[Triangles]:
-        for start in range(0, len(self._shell.triangles), TOGETHER):
-            yield self._shell.part(slice(start, start + TOGETHER))
+        for start in range(0, len(self._shell.triangles), AT_ONCE):
+            yield self._shell.part(slice(start, start + AT_ONCE))
 
 
 class _Motion:

@@ -33,7 +33,7 @@ from ....solve.settings import changed, traits_of
 from ...case_solver import CaseSolver, Task, written_scene
 from ...input_numbers import TRIED, InputNumbers
 from ...simulation import OWN_INPUTS
-from .reported import registered, with_reported
+from .requests import with_requests
 
 ENTRIES: Mapping[str, Addressed] = {
     "ADVANCE": ADVANCE, "OUTPUT_POINTS": OUTPUT_POINTS, "CONSISTENT_RATES": CONSISTENT_RATES, "EVENT_FUNCTIONS": EVENT_FUNCTIONS,
@@ -126,14 +126,13 @@ def refused(reason: str) -> str:
     return f"an FMU without Python is not possible for this scene: {reason}, or write the FMU with Python (without --native)"
 
 
-@registered()
 def exported_model(scene: Scene, outputs: Sequence[str] = ()) -> ExportedModel:
     """Return the model of a scene for an FMU with some outputs, by default all requests.
 
     Raises InputError for what only an FMU with Python computes.
     """
     given = {name: float(value) for name, value in scene.inputs.items() if isinstance(value, float | int)}
-    written, of_requests = with_reported(scene, written_scene(scene), outputs or scene.outputs())
+    written, of_requests = with_requests(scene, written_scene(scene), outputs or scene.outputs())
     solver = CaseSolver(Task(written, tuple(f"{OWN_INPUTS}.{name}" for name in given), {}, ()))
     scene = solver.scene([*given.values()])
     job = prepare(scene, changed(scene.run, {"presolve": False}))
