@@ -138,7 +138,8 @@ class Grid:
 
         A solver and the evaluation of its rows thus have one side. `shown` returns the times of the grid itself.
         """
-        if not len(features.all_breakpoints) and self.start <= self.end:  # the start may be just after a sample
+        first = self.end if self.times is None or not len(self.times) else self.times[0]
+        if not len(features.all_breakpoints) and first >= self.start:  # the start may be just after a sample
             return self
         times = None if self.times is None else self.before(self.times, features)
         return replace(self, end=float(self.before(np.array([self.end]), features)[0]), times=times)
