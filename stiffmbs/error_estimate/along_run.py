@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from .closed import closed
 from .coordinates import displaced, displacements, width
 from .defects import Points, curve_of_bdf, nodes_of_bdf, nonlinear_defects, woven
 from .evaluated import Evaluated, evaluated, motion
+from .grazed import missed_forces
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .parameters import ESTIMATE
 from .restarts import after_restart, autonomous, beyond_event, just_before
@@ -115,6 +116,10 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         if k:
             error, shift = _restarted(dynamics, prepared[-1], each, error, shift, bool(alike[own].all()))
         errors, slopes = _transported(transport, each, error)
+        times, changes = missed_forces(dynamics, each.states, errors)
+        if len(times):
+            each = _with_changes(each, times, changes)
+            errors, slopes = _transported(transport, each, error)
         error = errors[-1]
         prepared.append(each)
         of_pieces.append((errors + shift * motion(dynamics.system, each.states), slopes))
@@ -300,6 +305,18 @@ def _with_large_errors(
         kept = np.where(converged, missed[steps] & ~is_stiff, missed[steps] | (errors < before[steps]))
         found[steps[kept]], defects[steps[kept]] = exact[kept], np.nan
     return found
+
+
+def _with_changes(each: _Prepared, times: np.ndarray, changes: np.ndarray) -> _Prepared:
+    """Return a piece with further changes of the errors within steps at some times, shape (times, full)."""
+    t, defects, at_rows = each.states.t, each.defects.copy(), each.at_rows.copy()
+    steps = np.searchsorted(t[each.ends], times) - 1
+    of_rows = np.searchsorted(each.ends, np.arange(1, len(t))) - 1
+    rates = np.zeros((len(each.sizes), changes.shape[1]))
+    np.add.at(rates, steps, changes / each.sizes[steps, None])
+    defects += rates[:, None]
+    at_rows[1:] += rates[of_rows]
+    return replace(each, defects=defects, at_rows=at_rows)
 
 
 def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -42,6 +42,8 @@ class EstimateParameters:
     """Largest part of the steps whose quadrature is adaptive. If more seem to have kinks, these are rounding of stiff forces."""
     intervals: float = 2.0
     """Largest number of intervals that adaptive quadrature halves, in rows of the piece."""
+    uncertain: float = 0.03
+    """Part of the estimated errors by which they may be too small for a contact within the error to be found."""
     lost: float = 0.05
     """Error of a pose, rad or relative to the size of the mechanism, above which the linear estimate is lost."""
     tolerances: float = 100.0

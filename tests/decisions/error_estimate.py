@@ -9,7 +9,7 @@ import numpy as np
 
 from stiffmbs.analyses import errors as of_runs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.error_estimate import along_run, defects, estimate, kinks, restarts, transport
+from stiffmbs.error_estimate import along_run, defects, estimate, grazed, kinks, restarts, transport
 from stiffmbs.error_estimate.accuracy import Accuracy
 from stiffmbs.error_estimate.evaluated import evaluated
 from stiffmbs.model.read_scene import read_scene
@@ -97,6 +97,16 @@ def intervals():
         noise,
     )
     return calls[-1] // len(kinks.GAUSS_NODES)
+
+
+def is_missed(distance):
+    """Return True if a run that stays at a distance from a stop may miss its force, for errors of 1."""
+    scene = "{bodies: {a: {mass: 1, inertia: 1}}, forces: {stop: {type: force, i: a, force: ['max(-a.x, 0)', 0]}}}"
+    dynamics, t, fixed = prepare(read_scene(scene)).dynamics, np.linspace(-1.0, 1.0, 5), np.zeros((5, 2))
+    q, u = np.column_stack([distance + t**2, fixed]), np.column_stack([2.0 * t, fixed])
+    errors = np.zeros((5, 6))
+    errors[:, 0] = 1.0
+    return len(grazed.missed_forces(dynamics, evaluated(dynamics, t, q, u), errors)[0]) > 0
 
 
 def is_lost(error):
@@ -192,6 +202,7 @@ DECISIONS = {
     "error_estimate.intervals": intervals,
     "error_estimate.isolated": lambda: count_while(lambda count: not is_smooth(1.0, count), range(1, 101)),
     "error_estimate.row": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.row,
+    "error_estimate.uncertain": lambda: count_while(lambda part: is_missed(1.0 + 1e-3 * part), DOUBLES),
     "error_estimate.lost": lambda: count_while(lambda error: not is_lost(1e-3 * error), DOUBLES),
     "error_estimate.tolerances": lambda: count_while(lambda error: not noted("positions", 1e-6 * error), DOUBLES),
     "error_estimate.large": lambda: count_while(lambda error: not noted("forces", 1e-4 * error), DOUBLES),
@@ -212,6 +223,7 @@ EXPECTED = {
     "error_estimate.difference": 1e-07,
     "error_estimate.beside": 10, "error_estimate.close": 40, "error_estimate.points": 6,
     "error_estimate.uneven": 14,
+    "error_estimate.uncertain": 20,
     "error_estimate.lost": 23,
     "error_estimate.tolerances": 27,
     "error_estimate.large": 27,

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...compile.law_intervals import intervals_of
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import together
@@ -36,14 +37,36 @@ class JumpParameters:
 
 JUMP = tuned("jumps", JumpParameters())
 
-SWITCHES, CROSSED, BY_VELOCITIES, SIDE = together(
+SWITCHES, OF_STATES, CROSSED, BY_VELOCITIES, SIDE = together(
     "stiffmbs.solve.events.native.sides",
     SHORT,
     switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
+    of_states="void(int64, float64*, float64*, float64*, int64, float64*, int64*)",
     crossed="int64(float64, float64, float64*, float64*, float64*, float64*, int64, int64*, int64*)",
     by_velocities="void(float64, float64, float64*, float64*, float64*, int64, float64*, int64*)",
     side="int64(float64, float64, float64, float64*, float64*, float64*, float64*, float64*, int64, float64*, float64*, float64*, int64*)",
 )
+
+
+def event_functions(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return all values of the set ``event_function`` at many states, shape (n, values); the last state is that of `dynamics` then."""
+    dynamics.state.load("event_function")
+    found = np.empty((len(t), dynamics.system.n_values("event_function")))
+    kept = [np.ascontiguousarray(each, dtype=float) for each in (t, q, u)]
+    OF_STATES.call(len(t), *addresses(*kept), found.shape[1], address(found), dynamics.table.ctypes.data)
+    return found
+
+
+def distances_from_kinks(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the event functions at many states, and the distances from all breakpoints of tables with a kink, shape (n, all)."""
+    values, intervals = event_functions(dynamics, t, q, u), intervals_of(dynamics.system)
+    found = [values[:, : dynamics.system.n_event_functions]]
+    for k in np.flatnonzero(intervals.kinks).tolist():
+        away = values[:, k, None] - intervals.breakpoints[intervals.first[k] : intervals.first[k + 1]]
+        if period := intervals.period[k]:
+            away -= period * np.round(away / period)
+        found.append(away)
+    return np.hstack(found)
 
 
 class _Side(NamedTuple):

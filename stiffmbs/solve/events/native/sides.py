@@ -1,6 +1,6 @@
 """Event functions near a state: their sign changes on both sides and ahead, accelerations there, and rates."""
 
-from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
+from stiffmbs.compile.machine.native.access import compiled, factors_view, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
@@ -51,6 +51,16 @@ def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
     s = state_view(m.state)
     _take(s, size, q, u, along_q, along_u)
     copied(values, _event_functions(s, m, t), count)
+
+
+def of_states(n, t, q, u, count, values, dynamics):
+    """Store the first `count` event functions of n states in the rows of `values`."""
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    for i in range(n):
+        copied(s.q, shifted(q, i * s.n_q), s.n_q)
+        copied(s.u, shifted(u, i * s.n_u), s.n_u)
+        copied(shifted(values, i * count), _event_functions(s, m, t[i]), count)
 
 
 def by_velocities(t, size, q, u, along_u, count, found, dynamics):

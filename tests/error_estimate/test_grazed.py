@@ -1,0 +1,74 @@
+"""Errors by contacts that are touched for less than the error of a run, against closed forms.
+
+A mass on a spring touches, at each of its maxima, a stop that pushes another mass: x = cos(w t), and a force k (x - c).
+"""
+
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.error_estimate import along_run
+
+W, T = 200.0, 0.3
+FORMULA, TABLE = "{k}*max(q.x - {c}, 0)", "law(q.x - {c})"
+
+
+def run(force, k, c, **how):
+    scene = """
+        gravity: [0, 0]
+        tables: {law: {table: [[-3, 0], [0, 0], [1, K]], lines: true}}
+        bodies:
+          q: {mass: 1, inertia: 1, position: [1, 0]}
+          b: {mass: 1, inertia: 1, position: [0, 1]}
+        forces:
+          spring: {type: force, i: q, force: ["-W^2*q.x", 0]}
+          push: {type: force, i: b, force: [FORCE, 0]}
+        run: {duration: T, points: 31}
+        """
+    for name, value in {"FORCE": f'"{force.format(k=k, c=c)}"', "W": W, "K": k, "T": T}.items():
+        scene = scene.replace(name, str(value))
+    return stiffmbs.run(stiffmbs.read_scene(scene), errors=True, **how)
+
+
+def pushed(k, c):
+    """Return the position of the other mass at the end: each impulse moves it from then on, and half of one from the start."""
+    reach = np.arccos(c) / W
+    impulse = k * 2.0 * (np.sin(W * reach) / W - c * reach)
+    later = k * (reach * np.sin(W * reach) / W + (np.cos(W * reach) - 1.0) / W**2 - 0.5 * c * reach**2)
+    times = np.arange(1, int(T * W / (2.0 * np.pi)) + 1) * 2.0 * np.pi / W
+    return impulse * (0.5 * T + (T - times).sum()) - later
+
+
+def ratio(found, k, c):
+    """Return the estimated error of the other mass relative to the true one, at the end."""
+    return found.errors["b.x"].over_time / abs(found["b.x"][-1] - pushed(k, c))
+
+
+@pytest.mark.parametrize("force", [FORMULA, TABLE])
+@pytest.mark.parametrize(("solver", "rtol"), [("bdf", 1e-5), ("bdf", 1e-6), ("radau", 1e-4), ("radau", 1e-8)])
+def test_a_contact_within_the_error_is_in_the_estimate(force, solver, rtol):
+    k, c = 1e6, 0.99999
+    assert 0.2 < ratio(run(force, k, c, solver=solver, rtol=rtol), k, c) < 5.0
+
+
+def test_a_linear_estimate_misses_the_contact():
+    k, c = 1e6, 0.99999
+    with patch.object(along_run, "missed_forces", lambda dynamics, at, errors: (np.empty(0), np.empty((0, 0)))):
+        found = run(FORMULA, k, c, solver="bdf", rtol=1e-5)
+    assert ratio(found, k, c) < 1e-3
+
+
+def test_a_contact_that_may_be_touched_is_in_the_estimate():
+    """An error of 0.1 mm is not known to 0.1 um, by which a stop is reached or not."""
+    k, c = 1e9, 0.9999999
+    found = run(FORMULA, k, c, solver="bdf", rtol=1e-5)
+    assert found.errors["b.x"].over_time > abs(found["b.x"][-1] - pushed(k, c))
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
+def test_a_contact_beyond_the_errors_is_not(rtol):
+    found = run(FORMULA, 1e9, 1.02, solver="bdf", rtol=rtol)
+    assert found.errors["q.x"].over_time > 1e-6
+    assert found.errors["b.x"].over_time == 0.0
