@@ -42,6 +42,11 @@ class FiniteElements:
     shell: Shell | None = None  # elements of shells: inertia of rotations
 
     @property
+    def has_stresses(self) -> bool:
+        """True if its elements are known, and with them stresses."""
+        return self.solid is not None or self.shell is not None
+
+    @property
     def size(self) -> int:
         """Number of the components of all nodes."""
         return self.components * len(self.nodes)

@@ -1,4 +1,4 @@
-"""Stresses at the nodes of a mesh."""
+"""Stresses at the nodes of a mesh, or on both surfaces of its shells."""
 
 from __future__ import annotations
 
@@ -6,36 +6,57 @@ import numpy as np
 
 from ..errors import InputError
 from .finite_elements import FiniteElements
+from .shells.surfaces import TENSOR, Surfaces, surfaces_of
+from .solid import Solid
 
-PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
-"""Entries of the stress tensor: xx, yy, zz, xy, yz, zx."""
 
+class NodalStresses:
+    """Stresses at the nodes of solids: the mean of the elements there, of the stiffest material alone.
 
-def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarray:
-    """Return the stresses of displacements at the nodes: the mean of the elements there, of the stiffest material alone.
-
-    Between materials, the stress jumps. `displacements` of shape (3 n, k). The result of shape (k, n, 6): xx, yy, zz, xy, yz, zx, N/m^2. Raises InputError
-    if the model has no shape functions.
+    Between materials, the stress jumps. `nodes` of shape (points,): nodes of the points with stresses, here all.
     """
-    solid = model.solid
+
+    def __init__(self, solid: Solid, count: int) -> None:
+        self._solid, self.nodes = solid, np.arange(count)
+        stiffest = np.zeros(count)
+        for block in solid.blocks:
+            np.maximum.at(stiffest, block.nodes, np.tile(block.materials.modulus, (len(block.nodes), 1)))
+        self._gradients = [block.gradients(at_nodes=True)[0] for block in solid.blocks]
+        self._counted = [block.materials.modulus == stiffest[block.nodes] for block in solid.blocks]
+        self._elements = np.zeros(count)
+        for block, counted in zip(solid.blocks, self._counted, strict=True):
+            np.add.at(self._elements, block.nodes, counted)
+
+    def stresses(self, displacements: np.ndarray, first_order: np.ndarray | None = None) -> np.ndarray:
+        """Return the stresses of displacements, shape (size, k): xx, yy, zz, xy, yz, zx, N/m^2, shape (k, points, 6).
+
+        `first_order`: the parts of first order, of the same shape, whose strains of second order are added; none by default.
+        """
+        found = np.zeros((displacements.shape[1], len(self.nodes), 6))
+        for block, gradients, counted in zip(self._solid.blocks, self._gradients, self._counted, strict=True):
+            for number, own in enumerate(found):
+                strain = block.displacement_gradient(gradients, displacements[:, number])
+                if first_order is not None:
+                    slope = block.displacement_gradient(gradients, first_order[:, number])
+                    strain = strain + np.einsum("caep,cbep->abep", slope, slope) / 2
+                stress = block.stress(strain)
+                for k, (a, b) in enumerate(TENSOR):
+                    np.add.at(
+                        own[:, k], block.nodes, counted * stress[a, b].T
+                    )  # (elements, nodes) by (nodes, elements)
+        return found / self._elements[:, None]
+
+
+def stress_points(model: FiniteElements) -> NodalStresses | Surfaces:
+    """Return the points of a model that have stresses: the nodes of solids, or both surfaces of shells at each node.
+
+    Raises InputError if the model has no shape functions.
+    """
     if model.shell is not None:
-        raise InputError("found a body of shells, expected a mesh of solids: stresses of shells are not computed")
-    if solid is None:
+        return surfaces_of(model.shell)
+    if model.solid is None:
         raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
-    stiffest = np.zeros(len(model.nodes))
-    for block in solid.blocks:
-        np.maximum.at(stiffest, block.nodes, np.tile(block.materials.modulus, (len(block.nodes), 1)))
-    found, count = np.zeros((displacements.shape[1], len(model.nodes), 6)), np.zeros(len(model.nodes))
-    for block in solid.blocks:
-        gradients, _ = block.gradients(at_nodes=True)
-        counted = block.materials.modulus == stiffest[block.nodes]
-        np.add.at(count, block.nodes, counted)
-        for own, displacement in zip(found, displacements.T, strict=True):
-            stress = block.stress(block.displacement_gradient(gradients, displacement))
-            for k, (a, b) in enumerate(PLACES):
-                np.add.at(own[:, k], block.nodes, counted * stress[a, b].T)  # (elements, nodes) by (nodes, elements)
-    found /= count[:, None]
-    return found
+    return NodalStresses(model.solid, len(model.nodes))
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:
@@ -52,6 +73,6 @@ def deviatoric(stress: np.ndarray) -> np.ndarray:
 def principal_stresses(stress: np.ndarray) -> np.ndarray:
     """Return the three principal stresses, the largest first, on the last axis."""
     tensor = np.empty((*stress.shape[:-1], 3, 3))
-    for k, (a, b) in enumerate(PLACES):
+    for k, (a, b) in enumerate(TENSOR):
         tensor[..., a, b] = tensor[..., b, a] = stress[..., k]
     return np.linalg.eigvalsh(tensor)[..., ::-1]  # type: ignore[no-any-return]

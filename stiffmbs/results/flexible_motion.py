@@ -13,18 +13,18 @@ import numpy as np
 from ..compile.quaternions import rotated
 from ..elements.spatial.flexible.bodies import FloatingFrame
 from ..errors import InputError, needs
+from ..flexible_bodies import quadratic
 from ..flexible_bodies.finite_elements import FiniteElements
+from ..flexible_bodies.quadratic import Quadratic
 from ..flexible_bodies.reduction import ReducedBody, static_solver
 from ..flexible_bodies.second_order import displacement_of_second_order, stress_of
-from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
+from ..flexible_bodies.shells.surfaces import Surfaces
+from ..flexible_bodies.stress import NodalStresses, principal_stresses, stress_points, von_mises
 from ..reading.did_you_mean import did_you_mean
 
 if TYPE_CHECKING:
     from ..model.scene import Scene
     from .solution import Solution
-
-AT_ONCE = 50_000_000
-"""Numbers of stresses computed at once."""
 
 
 @dataclass(frozen=True)
@@ -100,14 +100,26 @@ class FlexibleMotion:
         return body.model(folder)  # type: ignore[no-any-return]
 
     @cached_property
-    def _second_order(self) -> Callable[[np.ndarray], np.ndarray] | None:
+    def _second_order(self) -> Callable[[np.ndarray], np.ndarray]:
         """Displacements of second order of all nodes by those of first order, with geometric stiffening."""
-        body, model = self._source[0], self.model
-        if not body.is_stiffened:
-            return None
-        interfaces = body.interfaces_on(model)
+        model, interfaces = self.model, self._source[0].interfaces_on(self.model)
         solver, _ = static_solver(model, interfaces, model.rigid_modes(self.reduced.centre))
         return partial(displacement_of_second_order, model, stress_of(model), interfaces, solver)
+
+    @cached_property
+    def _further_displacement(self) -> Quadratic:
+        """Displacements of second order of all nodes, shape (times, size)."""
+        return Quadratic(self._second_order, self.reduced.modes, len(self.t))
+
+    @cached_property
+    def _further_stress(self) -> Quadratic:
+        """Stresses by displacements and strains of second order, shape (times, points, 6)."""
+
+        def further(first: np.ndarray) -> np.ndarray:
+            """Return the stress of second order of a displacement."""
+            return self._points.stresses(self._second_order(first)[:, None], first[:, None])[0]
+
+        return Quadratic(further, self.reduced.modes, len(self.t))
 
     def displacement(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
@@ -118,9 +130,8 @@ class FlexibleMotion:
         entries = (self.reduced.components * chosen[:, None] + np.arange(3)).ravel()
         modal = self.modal[at]
         found = modal @ self.reduced.modes[entries].T
-        if self._second_order is not None:
-            for own, coordinates in zip(found, modal, strict=True):
-                own += self._second_order(self.reduced.modes @ coordinates)[entries]
+        if self._source[0].is_stiffened:
+            found += self._further_displacement(modal)[:, entries]
         return found.reshape(len(modal), len(chosen), 3)
 
     def position(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
@@ -154,30 +165,50 @@ class FlexibleMotion:
         return largest
 
     @cached_property
+    def _points(self) -> NodalStresses | Surfaces:
+        """Points with stresses."""
+        return stress_points(self.model)
+
+    @cached_property
     def _stress_modes(self) -> np.ndarray:
-        """Stresses xx yy zz xy yz zx at the nodes by mode, shape (modes, nodes, 6)."""
-        return nodal_stresses(self.model, self.reduced.modes)
+        """Stresses xx yy zz xy yz zx by mode, shape (modes, points, 6)."""
+        return self._points.stresses(self.reduced.modes)
+
+    @property
+    def stress_nodes(self) -> np.ndarray:
+        """Node of each point with a stress: all nodes of solids; of shells each node at least twice, for both surfaces."""
+        return self._points.nodes
 
     def stress(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
-        """Return the stresses xx, yy, zz, xy, yz, zx at the nodes, N/m^2, in the axes of the mesh, shape (times, nodes, 6).
+        """Return the stresses xx, yy, zz, xy, yz, zx, N/m^2, in the axes of the mesh, shape (times, points, 6).
 
-        They are linear in the modal coordinates, and the mean of the elements at a node. `at`: output times by number.
-        Raises InputError if the body is described by matrices.
+        They are the mean of the elements at a point. The points are those of `stress_nodes`. With geometric stiffening, strains are
+        those of second order, which a slender body has at small stresses. `at`: output times by number. Raises InputError if the
+        body is described by matrices.
         """
-        return np.tensordot(self.modal[at], self._stress_modes, 1)
+        modal = self.modal[at]
+        found = np.tensordot(modal, self._stress_modes, 1)
+        if self._source[0].is_stiffened:
+            found += self._further_stress(modal)
+        return found
 
     def von_mises(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
-        """Return the von Mises stresses at the nodes, N/m^2, shape (times, nodes); see `stress`."""
-        return von_mises(self.stress(at))
+        """Return the von Mises stresses at the nodes, N/m^2, shape (times, nodes): of shells the largest there; see `stress`."""
+        return self._largest(von_mises(self.stress(at)))
 
     def principal(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
-        """Return the principal stresses at the nodes, N/m^2, the largest first, shape (times, nodes, 3); see `stress`."""
+        """Return the principal stresses, N/m^2, the largest first, shape (times, points, 3); see `stress`."""
         return principal_stresses(self.stress(at))
+
+    def _largest(self, of_points: np.ndarray) -> np.ndarray:
+        """Return the largest value at each node, shape (times, nodes)."""
+        first = np.searchsorted(self.stress_nodes, np.arange(self.reduced.nodes))
+        return np.maximum.reduceat(of_points, first, axis=1)  # type: ignore[no-any-return]
 
     def peaks(self) -> dict[str, Peak]:
         """Return the largest von Mises and principal stress and the smallest principal stress, with place and time."""
         found: dict[str, Peak] = {}
-        step = max(1, AT_ONCE // max(1, 6 * self.reduced.nodes))
+        step = max(1, quadratic.AT_ONCE // max(1, 6 * len(self.stress_nodes)))
         for first in range(0, len(self.t), step):
             stress = self.stress(slice(first, first + step))
             principal = principal_stresses(stress)
@@ -185,18 +216,19 @@ class FlexibleMotion:
                 ("von Mises", von_mises(stress), 1), ("largest principal", principal[..., 0], 1),
                 ("smallest principal", principal[..., 2], -1),
             ):  # fmt: skip
-                row, node = np.unravel_index(int((sign * values).argmax()), values.shape)
-                value = float(values[row, node])
+                row, point = np.unravel_index(int((sign * values).argmax()), values.shape)
+                value, node = float(values[row, point]), int(self.stress_nodes[point])
                 if name not in found or sign * value > sign * found[name].value:
                     x, y, z = self.model.nodes[node].tolist()
-                    found[name] = Peak(value, int(node), (x, y, z), float(self.t[first + row]))
+                    found[name] = Peak(value, node, (x, y, z), float(self.t[first + row]))
         return found
 
     def error_of_stress(self, node: int) -> float | None:
         """Return the error bar of the von Mises stress at a node, N/m^2, if the run was verified."""
         if self._modal_errors is None:
             return None
-        return float(von_mises(self._stress_modes[:, node]) @ self._modal_errors)
+        of_modes = von_mises(self._stress_modes[:, self.stress_nodes == node])
+        return float((self._modal_errors @ of_modes).max())
 
     def write(self, path: Path, at: slice | np.ndarray = slice(None), scale: float = 1.0) -> None:
         """Write the moving and deformed mesh over time for ParaView, with displacement and stresses.
@@ -221,8 +253,13 @@ class FlexibleMotion:
         if scale != 1.0:
             moved = moved + rotated(self._frame[k, 3:], (scale - 1.0) * own)
         fields = {"displacement": own, "moved": moved - self.model.nodes}
-        if self.model.solid is not None:
-            fields |= {"von Mises": self.von_mises(row)[0], "largest principal": self.principal(row)[0, :, 0]}
+        if self.model.has_stresses:
+            stress = self.stress(row)
+            for name, values in (
+                ("von Mises", von_mises(stress)),
+                ("largest principal", principal_stresses(stress)[..., 0]),
+            ):
+                fields[name] = self._largest(values)[0]
         return fields
 
     def _checked(self, nodes: Sequence[int]) -> np.ndarray:

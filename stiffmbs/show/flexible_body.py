@@ -100,7 +100,7 @@ def flexible_motion_as_dict(scene: str, motion: FlexibleMotion, nodes: Sequence[
     `scene`: name of the file. `nodes`: nodes whose displacements are reported.
     """
     energy = motion.strain_energy()
-    peaks = motion.peaks() if motion.model.solid is not None else {}
+    peaks = motion.peaks() if motion.model.has_stresses else {}
     found: dict[str, Any] = {
         "scene": scene,
         "body": motion.name,
@@ -144,7 +144,7 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
             f"{name:20}{peak['value'] / 1e6:.6g}{bar} MPa at node {peak['node']} ({point} m), {peak['time']:.6g} s"
         )
     if not report["stress"]:
-        lines.append("stress              none: only meshes of solids have stresses")
+        lines.append("stress              none: only meshes have stresses")
     of_modes = np.array(report["strain_energy"]["by_mode"])
     lines.append(f"{'strain energy':20}{report['strain_energy']['largest']:.6g} J at most")
     for k in np.argsort(of_modes)[::-1][:MOST_FREQUENCIES]:

@@ -18,7 +18,8 @@ from stiffmbs.flexible_bodies import (
     static_solver,
 )
 from stiffmbs.flexible_bodies.shells import checks as shell_checks
-from stiffmbs.flexible_bodies.shells import shell, stress
+from stiffmbs.flexible_bodies.shells import shell, stress, surfaces
+from stiffmbs.results import flexible_motion
 from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -183,6 +184,39 @@ def most_kept_triangles():
     return count_while(are_kept, (1000 * DOUBLES).astype(int))
 
 
+def parts_of_stresses():
+    """Return the number of parts in which the peaks of stresses at 200 000 instants are found, of a body of 1000 modes."""
+    lengths = []
+
+    def stress(part):
+        lengths.append(part)
+        return np.zeros((1, 1, 6))
+
+    body = Record(
+        stress_nodes=np.arange(333), t=np.zeros(200_000), stress=stress, model=Record(nodes=np.zeros((333, 3)))
+    )
+    flexible_motion.FlexibleMotion.peaks(body)
+    return len(lengths)
+
+
+def sharpest_fold():
+    """Return the angle between two triangles, in steps of 0.01 rad, up to which they have common points on both surfaces."""
+
+    def is_smooth(steps):
+        angle = 0.01 * steps
+        nodes = np.array([[0, 0, 0], [0, 1, 0], [-1, 0, 0], [np.cos(angle), 0, np.sin(angle)]], dtype=float)
+        ones = np.ones(2)
+        of = shell.of_elements(
+            nodes,
+            {"triangle": np.array([[0, 1, 2], [0, 3, 1]])},
+            {"triangle": shell.ElementMaterials(ones, 0 * ones, ones)},
+            {"triangle": ones},
+        )
+        return len(surfaces.surfaces_of(of).nodes) == 8
+
+    return count_while(is_smooth, DOUBLES)
+
+
 def coarsest_shell_without_a_note():
     def is_noted(square):
         body = Record(coarseness=square, elements="quad", parts="")
@@ -194,6 +228,8 @@ def coarsest_shell_without_a_note():
 DECISIONS = {
     "flexible_bodies.reduction:COARSE": coarsest_shell_without_a_note,
     "flexible_bodies.shells.stress:KEPT": most_kept_triangles,
+    "flexible_bodies.shells.surfaces:FOLD": sharpest_fold,
+    "flexible_bodies.quadratic:AT_ONCE": parts_of_stresses,
     "flexible_bodies.shells.shell:LEAST_DRILLING": drilling_without_membrane,
     "flexible_bodies.shells.shell:WARPED": most_warped_quadrilateral,
     "flexible_bodies.shells.shell:AT_ONCE": parts_of_a_shell,
@@ -226,7 +262,7 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "flexible_bodies.reduction:COARSE": 14,
-    "flexible_bodies.shells.stress:KEPT": 20,
+    "flexible_bodies.shells.stress:KEPT": 20, "flexible_bodies.shells.surfaces:FOLD": 23, "flexible_bodies.quadratic:AT_ONCE": 8,
     "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:AT_ONCE": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,

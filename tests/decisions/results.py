@@ -15,7 +15,6 @@ from stiffmbs.results import (
     energy_balance,
     energy_balance_notes,
     error_bars,
-    flexible_motion,
     joined,
     marker_motion,
     other_programs,
@@ -136,19 +135,6 @@ def farthest_saved_row():
     return count_while(lambda apart: finds(1e-12 * apart), DOUBLES)
 
 
-def parts_of_stresses():
-    """Return the number of parts in which the peaks of stresses at 200 000 instants are found, of a body of 1000 modes."""
-    lengths = []
-
-    def stress(part):
-        lengths.append(part)
-        return np.zeros((1, 1, 6))
-
-    body = Record(reduced=Record(nodes=333), t=np.zeros(200_000), stress=stress, model=Record(nodes=np.zeros((1, 3))))
-    flexible_motion.FlexibleMotion.peaks(body)
-    return len(lengths)
-
-
 def most_reliable_digits():
     run = Record(channels={}, requested={}, not_unique=(), estimate=None, errors={"a.x": Record(over_time=1e-300)})
     with patch.object(digits, "scales", lambda *_: {"a.x": 1.0}):
@@ -165,7 +151,6 @@ DECISIONS = {
     "results.energy_balance_notes:OF_POTENTIAL": lambda: ignored_energy(0.0, 1.0),
     "results.error_bars:SAFETY": lambda: error_bars.error_bar(np.zeros(2), [np.ones(2)], None, 0.0).over_time,
     "results.error_bars:FINER": lambda: error_bars.between(np.arange(3.0), np.array([[0.0, 1.0, 0.0]]), np.array([0, 2]))[0],
-    "results.flexible_motion:AT_ONCE": parts_of_stresses,
     "results.joined:SAME_VALUE": largest_step_between_joined_runs,
     "results.joint_angles:UNCERTAIN_TURN": largest_difference_of_turns,
     "results.marker_motion:ALIGNED": smallest_angle_of_axes,
@@ -189,7 +174,7 @@ EXPECTED = {
     "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance_notes:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,
     "results.energy_balance_notes:OF_POTENTIAL": 1e-10, "results.error_bars:SAFETY": 2.0, "results.error_bars:FINER": 1.1,
-    "results.flexible_motion:AT_ONCE": 8, "results.joined:SAME_VALUE": 40, "results.joint_angles:UNCERTAIN_TURN": 14,
+    "results.joined:SAME_VALUE": 40, "results.joint_angles:UNCERTAIN_TURN": 14,
     "results.marker_motion:ALIGNED": 160, "results.other_programs:Limits.name": 63, "results.other_programs:Limits.rows": 1_048_576,
     "results.other_programs:Limits.columns": 16_384, "results.other_programs:Limits.cell": 32_767, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
     "results.scales:FIXED": 1e-9, "results.scales:CROSSED": 1e-5, "results.scales:OF_GRAVITY": 4.905e-3, "results.scales:REQUEST_ROUNDING": 187,

@@ -9,6 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from stiffmbs.flexible_bodies.shells.surfaces import surfaces_of
+
 from .shells import frequencies, places, pressure, shell, surface, under
 
 E, NU, THIN = 1e7, 0.3, 1e-3
@@ -39,6 +41,38 @@ def plate_frequency(kind, n, simple=True):
     """Return the lowest frequency of a plate."""
     of, held, _ = square(kind, n, simple=simple)
     return frequencies(of, held, 1)[0] * np.sqrt(THIN / D) / (2 * np.pi**2 if simple else 35.985)
+
+
+def plate_stress(kind, n, simple=True):
+    """Return the stress of a plate under uniform pressure: in its centre, or at the middle of a clamped edge."""
+    of, held, grid = square(kind, n, simple=simple)
+    surfaces, motion = surfaces_of(of), under(of.stiffness(), held, pressure(of, [0, 0, 1]))
+    at = surfaces.nodes == (grid[n // 2, n // 2] if simple else grid[0, n // 2])
+    found = surfaces.stresses(motion.reshape(-1, 1))[0, at, 0]
+    return np.abs(found).max() * THIN**2 / 6 / (0.0479 if simple else 0.0513)
+
+
+def hole(kind, n):
+    """Return the stress at a hole in an infinite sheet under tension, 3 (Kirsch 1898): a quarter, moved as the solution at its edge."""
+
+    def place(a, b):
+        r, angle = 6.0**a, np.pi / 2 * b
+        return r * np.cos(angle), r * np.sin(angle), 0
+
+    nodes, cells, grid = surface(n, n, place, kind)
+    of, edge = shell(nodes, cells, E, NU, THIN), grid[-1]
+    angle, r = np.pi / 2 * np.linspace(0, 1, n + 1), 6.0
+    shear, kappa = E / (2 * (1 + NU)), (3 - NU) / (1 + NU)
+    radial = (kappa - 1) * r + 2 / r + 2 * np.cos(2 * angle) * (r + (kappa + 1) / r - r**-3)
+    around = -2 * np.sin(2 * angle) * (r + (kappa - 1) / r + r**-3)
+    given = np.zeros((len(nodes), 6))
+    given[edge, 0] = (radial * np.cos(angle) - around * np.sin(angle)) / (8 * shear)
+    given[edge, 1] = (radial * np.sin(angle) + around * np.cos(angle)) / (8 * shear)
+    held = [places(grid, [2, 3, 4]), places(edge, [0, 1]), places(grid[:, 0], [1, 5]), places(grid[:, -1], [0, 5])]
+    stiffness = of.stiffness()
+    motion = under(stiffness, np.unique(np.concatenate(held)), -(stiffness @ given.ravel())) + given
+    surfaces = surfaces_of(of)
+    return surfaces.stresses(motion.reshape(-1, 1))[0, surfaces.nodes == grid[0, -1], 0].max() / 3.0
 
 
 def cantilever_frequencies(kind, n):
@@ -143,6 +177,12 @@ PROBLEMS: dict[str, Callable[[str, int], float | np.ndarray]] = {
     "hemisphere": hemisphere,
 }
 """Problems with n elements on each side."""
+STRESSES: dict[str, Callable[[str, int], float]] = {
+    "simple plate, stress": plate_stress,
+    "clamped plate, stress": lambda kind, n: plate_stress(kind, n, simple=False),
+    "hole in a sheet, stress": hole,
+}
+"""Stresses, with n elements on each side."""
 BEAMS: dict[str, Callable[[str, int], float | np.ndarray]] = {
     "twisted beam": twisted_beam,
     "thin twisted beam": lambda kind, n: twisted_beam(kind, n, 0.0032),

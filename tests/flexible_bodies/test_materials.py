@@ -9,7 +9,7 @@ from stiffmbs.flexible_bodies.description import FlexibleBody, Material
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.flexible_bodies.reduction import rigid_body
-from stiffmbs.flexible_bodies.stress import nodal_stresses
+from stiffmbs.flexible_bodies.stress import stress_points
 
 from .bars import HEIGHT, LENGTH, STEEL, WIDTH, mesh_of_bar
 
@@ -71,14 +71,14 @@ def test_two_halves_of_a_bar_are_springs_in_series(tmp_path, name):
     parts = np.array([STIFF.density, SOFT.density]) * area * half
     assert mass == pytest.approx(parts.sum(), rel=1e-6)
     assert centre[0] == pytest.approx(parts @ [half / 2, 1.5 * half] / parts.sum(), rel=1e-6)
-    np.testing.assert_allclose(nodal_stresses(model, pulled[:, None])[0, :, 0], 1.0, rtol=1e-9)
+    np.testing.assert_allclose(stress_points(model).stresses(pulled[:, None])[0, :, 0], 1.0, rtol=1e-9)
 
 
 def test_a_stress_between_materials_is_that_of_the_stiffest(tmp_path):
     _as_gmsh(mesh_of_bar("hexahedron"), tmp_path / "bar.msh")
     model = from_mesh(tmp_path / "bar.msh", 1e-3, BOTH)
     stretched = (model.nodes * [1.0, 0.0, 0.0]).ravel()
-    stress = nodal_stresses(model, stretched[:, None])[0, :, 0]
+    stress = stress_points(model).stresses(stretched[:, None])[0, :, 0]
     np.testing.assert_allclose(stress, np.where(model.nodes[:, 0] < LENGTH / 2 + 1e-9, STIFF.E, SOFT.E), rtol=1e-9)
 
 

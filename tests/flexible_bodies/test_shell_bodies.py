@@ -16,14 +16,12 @@ from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.linearised.modes import modes
 from stiffmbs.analyses.run import run
 from stiffmbs.commands.main import main
-from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.description import FlexibleBody, Material
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.flexible_bodies.reduction import reduce, rigid_body, static_solver
 from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, stress_of
 from stiffmbs.flexible_bodies.shells.stress import _Motion
-from stiffmbs.results.flexible_motion import FlexibleMotion
 from stiffmbs.show.drawing.deformed import deformed_body
 
 from .bars import face
@@ -251,14 +249,6 @@ def test_free_flight_keeps_energy_and_momentum(folder):
     assert np.ptp(total) < 1e-7 * total[0]
 
 
-def test_stresses_of_shells_are_refused(folder):
-    model = scene(folder, "plate", SHELL, CLAMP + "run: {duration: 1 ms, points: 2}\n")
-    motion = FlexibleMotion(model, run(model), "plate")
-    assert motion.displacement([3]).shape == (2, 1, 3)
-    with pytest.raises(InputError, match="found a body of shells, expected a mesh of solids"):
-        motion.von_mises()
-
-
 def test_thickness_is_a_parameter_of_the_reduction(folder):
     """Twice the thickness has twice the mass and, in bending, nearly twice the frequencies."""
     described = {"mesh": "plate.vtu", "units": {"length": 1e-3}, "material": ALUMINIUM.model_dump(), "modes": 3}
@@ -272,9 +262,6 @@ def test_pictures_show_the_shells(folder):
     part = deformed_body("plate.frame", model.bodies["plate.frame"])
     (solid,) = part.solids
     assert len(solid.faces) == 64 and len(solid.vertices) == 85
-    colored = scene(folder, "plate", SHELL + "    stress_colors: true\n", CLAMP + "run: {duration: 1 ms, points: 2}\n")
-    with pytest.raises(InputError, match=r"stress_colors: found a body of shells, expected a mesh of solids"):
-        deformed_body("plate.frame", colored.bodies["plate.frame"])
 
 
 def test_commands_report_and_write_a_body_of_shells(folder):
@@ -294,7 +281,7 @@ def test_commands_report_and_write_a_body_of_shells(folder):
     out = folder / "plate.xdmf"
     found = runner.invoke(main, ["stresses", str(folder / "scene.yaml"), "plate", "--node", "84", "-o", str(out)])
     assert found.exit_code == 0, found.output
-    assert "only meshes of solids have stresses" in found.output and "node 84" in found.output
+    assert "von Mises" in found.output and "node 84" in found.output
 
 
 def test_a_coarse_dome_has_a_note(tmp_path):

@@ -10,9 +10,11 @@ from skfem import MeshHex, MeshHex2
 from skfem.io.meshio import to_meshio
 
 from stiffmbs import load_scene
+from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.run import run
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
+from stiffmbs.flexible_bodies.quadratic import Quadratic
 from stiffmbs.flexible_bodies.reduction import reduce, static_solver
 from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, stress_of
 from stiffmbs.results.flexible_motion import FlexibleMotion
@@ -189,13 +191,40 @@ def test_mistakes_of_the_command_are_one_sentence(loaded_bar, monkeypatch, argum
     assert result.exit_code == 2 and message in result.output and result.output.count("\n") == 1
 
 
+def test_a_bar_that_bends_by_its_height_has_no_tension(tmp_path):
+    """The end is free to move along: both sides have the stress of bending alone, and the mean strain of second order is zero."""
+    mesh_of_bar("hexahedron20", along=20, across=2).write(tmp_path / "bar.vtu")
+    (tmp_path / "bar.yaml").write_text(SCENE.replace("[0, 100, 0]", "[0, 0, 4 kN]"))
+    scene = load_scene(tmp_path / "bar.yaml")
+    motion = FlexibleMotion(scene, equilibrium(scene).solution, "bar")
+    nodes = motion.model.nodes
+    assert np.ptp(motion.position()[0, :, 2]) > 1.9 * HEIGHT
+    middle = (np.abs(nodes[:, 0] - LENGTH / 2) < 1e-9) & (np.abs(nodes[:, 1] - WIDTH / 2) < 1e-9)
+    below, above = (motion.stress()[0, middle & (np.abs(nodes[:, 2] - z) < 1e-9), 0] for z in (0.0, HEIGHT))
+    bending = 6 * 4e3 * LENGTH / 2 / (WIDTH * HEIGHT**2)
+    np.testing.assert_allclose([below[0], above[0]], [bending, -bending], rtol=0.02)
+    linear = np.tensordot(motion.modal, motion._stress_modes, 1)[0, middle, 0]
+    assert abs(linear.mean()) > 0.04 * bending
+
+
+@pytest.mark.parametrize("times", [2, 1000])
+def test_quadratic_functions_do_not_depend_on_the_number_of_times(times):
+    """Each by itself, or by products of coordinates."""
+    found = Quadratic(lambda u: np.outer(u, u), np.random.default_rng(0).random((3, 4)), times)
+    coordinates = np.random.default_rng(1).standard_normal((5, 4))
+    displacements = coordinates @ found._modes.T
+    assert found(coordinates[:0]).shape == (0, 3, 3)
+    np.testing.assert_allclose(found(coordinates), np.einsum("ta,tb->tab", displacements, displacements), rtol=1e-12)
+    assert (found._coefficients is None) == (times == 2)
+
+
 def test_stresses_need_a_mesh(tmp_path):
     from stiffmbs.flexible_bodies.finite_elements import FiniteElements
-    from stiffmbs.flexible_bodies.stress import nodal_stresses
+    from stiffmbs.flexible_bodies.stress import stress_points
 
     model = bar(tmp_path, along=2, across=1)
     with pytest.raises(InputError, match="found a body described by matrices"):
-        nodal_stresses(FiniteElements(model.nodes, model.stiffness, model.mass), np.zeros((len(model.nodes) * 3, 1)))
+        stress_points(FiniteElements(model.nodes, model.stiffness, model.mass))
 
 
 SPINNING = """

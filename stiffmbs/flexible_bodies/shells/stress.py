@@ -51,7 +51,7 @@ class ShellStress:
         """Return the forces on all components of the strains of second order of a displacement, shape (6 n,)."""
         found = np.zeros(len(displacement))
         for triangles in self.parts():
-            strain = _Motion(triangles, displacement[:, None]).strain(triangles)
+            strain = second_order_strains(triangles, displacement)
             local = np.einsum("tpai,tpa->ti", triangles.strains, triangles.resultants(strain))
             np.add.at(found, triangles.places, triangles.forces(local))
         return found
@@ -67,6 +67,11 @@ class ShellStress:
     def _computed(self) -> Iterator[Triangles]:
         for start in range(0, len(self._shell.triangles), AT_ONCE):
             yield self._shell.part(slice(start, start + AT_ONCE))
+
+
+def second_order_strains(triangles: Triangles, displacement: np.ndarray) -> np.ndarray:
+    """Return the strains of second order of a displacement, shape (6 n,), as those of `Triangles.strains`, (triangles, points, 8)."""
+    return _Motion(triangles, displacement[:, None]).strain(triangles)
 
 
 class _Motion:

@@ -14,7 +14,8 @@ from ...errors import InputError
 from ...flexible_bodies.finite_elements import FiniteElements
 from ...flexible_bodies.reduced import reduced_body
 from ...flexible_bodies.shapes import ELEMENTS
-from ...flexible_bodies.stress import deviatoric, nodal_stresses
+from ...flexible_bodies.shells.surfaces import Surfaces
+from ...flexible_bodies.stress import deviatoric, stress_points
 from ...model.model_data import ModelData
 from . import solids
 from .poses import Poses
@@ -33,12 +34,16 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
     """
     body, folder = frame.source
     model, reduced = body.model(folder), reduced_body(body, folder)
-    if body.stress_colors and model.solid is None:
-        found = "described by matrices" if model.shell is None else "of shells"
+    if body.stress_colors and not model.has_stresses:
         raise InputError(
-            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body {found}, expected a mesh of solids"
+            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body described by matrices, expected a mesh"
         )
-    faces = surface(model)
+    stressed = stress_points(model) if body.stress_colors else None
+    if isinstance(stressed, Surfaces):
+        faces, points = list(stressed.faces(model.cells)), model.nodes[stressed.nodes] + stressed.arms
+        moved = stressed.displacements(reduced.modes)
+    else:
+        faces, points, moved = surface(model), model.nodes, np.moveaxis(reduced.displacements, -1, 0)
     if not faces:
         return None
     used, inverse = np.unique(np.concatenate(faces), return_inverse=True)
@@ -49,11 +54,9 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
         every[: len(of_modes)] = np.sqrt(reduced.mass) * of_modes
         return {modal: every[3 * k : 3 * k + 3] for k, modal in enumerate(frame.modes)}
 
-    shapes = body.deformation_scale * np.moveaxis(reduced.displacements, -1, 0)[:, used]
-    stresses = deviatoric(nodal_stresses(model, reduced.modes)[:, used]) if body.stress_colors else None
     solid = Solid(
-        model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=by_coordinates(shapes),
-        stresses={} if stresses is None else by_coordinates(stresses),
+        points[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=by_coordinates(body.deformation_scale * moved[:, used]),
+        stresses={} if stressed is None else by_coordinates(deviatoric(stressed.stresses(reduced.modes)[:, used])),
     )  # fmt: skip
     return Part(name, "body", name, (solids.edged(solid, math.inf) if len(faces) < solids.MOST_FACES else solid,))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.flexible_bodies.published_shells import BEAMS, PROBLEMS
+from tests.flexible_bodies.published_shells import BEAMS, PROBLEMS, STRESSES
 from tests.flexible_bodies.shells import KINDS
 
 from ...benchmark import Row
@@ -33,7 +33,7 @@ class Shells:
 
 
 def _rows(most: int) -> Iterator[Row]:
-    for problems, divisions in zip((PROBLEMS, BEAMS), DIVISIONS.values(), strict=True):
+    for problems, divisions in zip((PROBLEMS | STRESSES, BEAMS), DIVISIONS.values(), strict=True):
         for name, ratio in problems.items():
             for kind in KINDS:
                 for n in divisions[:most]:
