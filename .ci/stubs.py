@@ -25,8 +25,7 @@ from stiffmbs.elements.spatial.orientation import OrientationField
 from stiffmbs.elements.states.amount import Amount
 from stiffmbs.elements.tyres.coefficients import TyreProperties
 from stiffmbs.loaded_later import elements_of
-from stiffmbs.model.beams.section import Material
-from stiffmbs.reading.fields import Measured
+from stiffmbs.reading.fields import Described, Measured
 from stiffmbs.reading.formula.formula import Formula
 from stiffmbs.reading.joint_name import JointName
 from stiffmbs.reading.marker import MarkerReference, Placement
@@ -124,6 +123,7 @@ OTHERS = (
     "AlgebraicState",
     "BeamBody",
     "Body",
+    "FlexibleBody",
     "LinearSystem",
     "Marker",
     "PID",
@@ -140,7 +140,7 @@ def stub(file: str) -> str:
     exports, others, module = MODULES[file]
     described = {name: getattr(module, name) for name in OTHERS if hasattr(module, name)}
     elements = sorted((elements_of(module._KINDS) | described).items())
-    imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
+    imports = [f"from {element.__module__} import {element.__name__} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"
 
@@ -205,7 +205,7 @@ TAKEN: Mapping[type, str] = {
     Road: "given.Road",
     TyreProperties: "given.TyreProperties",
     Envelope: "given.Envelope",
-    Material: "Mapping[str, object]",
+    Described: "Mapping[str, object]",
 }
 GIVEN_AS = {"body": "str | _Handle", "elements": "given.Number | Sequence[int] | Mapping[str, given.Number]"}
 """Types of fields that take more than their own type shows."""

@@ -58,6 +58,7 @@ from stiffmbs.elements.spatial.joints.thread import Thread as _Thread
 from stiffmbs.elements.spatial.joints.universal import Universal as _Universal
 from stiffmbs.elements.spatial.marker import Marker as _Marker
 from stiffmbs.model.beams.spatial import BeamBody as _BeamBody
+from stiffmbs.model.flexible import SceneFlexibleBody as _FlexibleBody
 
 from .analyses.in_space import in_space as in_space
 from .elements.element import Force as Force
@@ -405,6 +406,33 @@ class FieldForce(_FieldForce):
 class Fixed(_Fixed):
     """Weld: two markers coincide in position and orientation."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["fixed"] = ...) -> None: ...
+
+class FlexibleBody(_FlexibleBody):
+    """Flexible body of a scene or a model. Files of a model are relative to the current folder."""
+    def __init__(
+        self,
+        *,
+        mesh: str | None = ...,
+        matrices: str | Mapping[str, object] | None = ...,
+        units: Mapping[str, object],
+        material: Mapping[str, object] | None = ...,
+        materials: Mapping[str, Mapping[str, object]] | None = ...,
+        thickness: given.Number | Mapping[str, object] | None = ...,
+        thicknesses: Mapping[str, given.Number] | None = ...,
+        interfaces: Mapping[str, Mapping[str, object]] = ...,
+        modes: int | Mapping[str, object] = ...,
+        mass: given.Number | None = ...,
+        stiffening: bool | Literal["auto"] = ...,
+        mirror: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] | None = ...,
+        residual_modes: bool = ...,
+        position: given.Numbers = ...,
+        orientation: given.Orientation = ...,
+        velocity: given.Numbers = ...,
+        omega: given.Numbers = ...,
+        damping: given.Number | Mapping[str, object] | given.Numbers = ...,
+        deformation_scale: given.Number = ...,
+        stress_colors: bool = ...,
+    ) -> None: ...
 
 class Gear(_Gear):
     """Gear pair with both wheels on one carrier: theta_1 + ratio theta_2 - offset = 0."""

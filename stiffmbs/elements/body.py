@@ -29,6 +29,11 @@ FLEXIBLE = "flexible"
 """Type of a flexible body in a scene."""
 
 
+def is_flexible(entry: object) -> bool:
+    """Return True for an entry of a flexible body, as it is written in a scene."""
+    return isinstance(entry, dict) and entry.get("type") == FLEXIBLE
+
+
 class Body(Described):
     """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi."""
 
@@ -83,10 +88,10 @@ class Body(Described):
 
 
 class LineBody(Described):
-    """Base of bodies that consist of several rigid bodies and the forces between them, such as beams."""
+    """Base of bodies that consist of several bodies and elements between them, such as beams and flexible bodies."""
 
     def add_to(self, model: object, name: str) -> object:
-        """Add the rigid bodies and forces to a model built in Python, and return a handle."""
+        """Add the bodies and elements to a model built in Python, and return a handle."""
         raise NotImplementedError
 
 

@@ -107,6 +107,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         return StateErrors(t, q, u, states.rows, states.q, states.u, nothing, left_out, never, restarts)
     transport = Transport(dynamics, states)
     prepared: list[_Prepared] = []
+    kinked = dynamics.system.n_values("event_function") > 0
     of_pieces: list[tuple[np.ndarray, np.ndarray]] = []  # errors and their rates
     error, shift = np.zeros(width(dynamics.system)), 0.0
     for k, piece in enumerate(pieces):
@@ -116,10 +117,11 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         if k:
             error, shift = _restarted(dynamics, prepared[-1], each, error, shift, bool(alike[own].all()))
         errors, slopes = _transported(transport, each, error)
-        times, changes = missed_forces(dynamics, each.states, errors)
-        if len(times):
-            each = _with_changes(each, times, changes)
-            errors, slopes = _transported(transport, each, error)
+        if kinked:
+            missed = missed_forces(dynamics, each.states, errors)
+            if len(missed[0]):
+                each = _with_changes(each, *missed)
+                errors, slopes = _transported(transport, each, error)
         error = errors[-1]
         prepared.append(each)
         of_pieces.append((errors + shift * motion(dynamics.system, each.states), slopes))

@@ -28,6 +28,7 @@ from ..reading.units import si
 from .areas import nodal_areas
 from .finite_elements import PRECISION, FiniteElements
 from .interfaces import AVERAGE, POINT, Interface
+from .mirrored import mirrored
 
 Point = si.Point3
 
@@ -186,6 +187,10 @@ class InterfaceOfNodes(Described):
         return np.searchsorted(numbers, self.nodes)
 
 
+Mirror = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
+"""Coordinates that change their signs."""
+
+
 class UpTo(Described):
     """Normal modes up to a frequency."""
 
@@ -234,6 +239,7 @@ class FlexibleBody(Described):
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
     stiffening: bool | Literal["auto"] = Field("auto", description="geometric stiffening; auto: for a body with a mesh")
+    mirror: Mirror | None = Field(None, description="coordinates of the file that change their signs, such as y or xy")
     residual_modes: bool = Field(
         False, description="static correction: add the displacements under uniform accelerations to the modes"
     )
@@ -315,20 +321,28 @@ class FlexibleBody(Described):
             return tuple(name for name in found if name is not None)
         return (self.mesh or self.matrices or "",)
 
+    @property
+    def signs(self) -> np.ndarray:
+        """Signs of the coordinates, shape (3,): -1 for mirrored ones."""
+        return np.array([-1.0 if axis in (self.mirror or "") else 1.0 for axis in "xyz"])
+
     def model(self, folder: Path) -> FiniteElements:
         """Return the checked finite element model. `folder`: folder of relative file names. Raises InputError."""
         found = self._read(folder)
         found.check()
-        return found
+        return mirrored(found, self.signs) if self.mirror else found
 
     def interfaces_on(self, model: FiniteElements) -> list[Interface]:
-        """Return the interfaces on a model. Raises InputError."""
-        if self.stretch is None:
-            return [interface.on(name, model) for name, interface in self.interfaces.items()]
-        stretch, scale = self.stretch.moved, self.stretch.scale
-        before = replace(model, nodes=stretch(model.nodes, model.nodes, 1 / scale))
-        found = (interface.on(name, before) for name, interface in self.interfaces.items())
-        return [replace(each, point=stretch(each.point[None], model.nodes, scale)[0]) for each in found]
+        """Return the interfaces on a model, which select its nodes as they are in the file. Raises InputError."""
+        places = of_file = model.nodes * self.signs
+        if self.stretch is not None:
+            of_file = self.stretch.moved(places, places, 1 / self.stretch.scale)
+        before = replace(model, nodes=of_file)
+        found = [interface.on(name, before) for name, interface in self.interfaces.items()]
+        if self.stretch is not None:
+            moved = (self.stretch.moved(each.point[None], places, self.stretch.scale)[0] for each in found)
+            found = [replace(each, point=point) for each, point in zip(found, moved, strict=True)]
+        return [replace(each, point=each.point * self.signs) for each in found]
 
     def _read(self, folder: Path) -> FiniteElements:
         units = self.units.length, self.units.mass, self.units.time

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypeVar
 
 import numpy as np
 from pydantic import Field
 
-from ..elements.body import FLEXIBLE
+from ..elements.body import LineBody, is_flexible
 from ..elements.element import Joint
 from ..elements.spatial.body import Body
 from ..elements.spatial.flexible.bodies import AXES_HELD, UNUSED_HELD, FloatingFrame, ModalCoordinates
@@ -28,6 +28,7 @@ from ..flexible_bodies.reduction import ReducedBody
 from ..reading.fields import Described, Measured, located
 from ..reading.files.files_read import FOLDER, Context
 from ..reading.files.yaml_text import Content
+from ..reading.handle import Handles
 from ..reading.units import si
 
 if TYPE_CHECKING:
@@ -52,8 +53,14 @@ class Rayleigh(Described):
     stiffness: si.TimeOrZero = Field(0.0, description="factor of the stiffness matrix, s")
 
 
-class SceneFlexibleBody(FlexibleBody):
-    """Flexible body of a scene."""
+class FlexibleHandle(Handles):
+    """Interfaces of a flexible body in a model built in Python, by name: ``arm.pin``, ``arm["pin"]``."""
+
+    what = "interface"
+
+
+class SceneFlexibleBody(FlexibleBody, LineBody):
+    """Flexible body of a scene or a model. Files of a model are relative to the current folder."""
 
     type: Literal["flexible"] = "flexible"
     position: Point = Field(ORIGIN, description="of the origin of the mesh at the start, m")
@@ -75,6 +82,13 @@ class SceneFlexibleBody(FlexibleBody):
         False, description="color by von Mises stress in pictures, films and pages; of meshes only", repr=False
     )
 
+    def add_to(self, model: Any, name: str) -> FlexibleHandle:
+        """Add the frame, modal coordinates and interfaces to a model built in Python, and return handles of the interfaces."""
+        bodies, joints = bodies_and_joints(name, self, {}, name)
+        for full, part in (*bodies.items(), *joints.items()):
+            model.add(full, part)
+        return FlexibleHandle(name, {each: model.handle_type(f"{name}.{each}", model) for each in self.interfaces})
+
 
 def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
     """Return a scene whose flexible bodies are replaced by their frames, modal coordinates and interfaces.
@@ -87,15 +101,10 @@ def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
     added_bodies: dict[str, object] = {}
     added_joints: dict[str, object] = dict(joints) if isinstance(joints, dict) else {}
     for name, entry in bodies.items():
-        if not isinstance(entry, dict) or entry.get("type") != FLEXIBLE:
+        if not is_flexible(entry):
             added_bodies[name] = entry
             continue
-        with located(f"bodies.{name}"):
-            body = SceneFlexibleBody.model_validate(entry, context=dict(context))
-        with prefixed(f"bodies.{name}: "):
-            reduced = reduced_body(body, Path(context.get(FOLDER) or ""))
-        parts = _Parts(name, body, reduced, Path(context.get(FOLDER) or ""))
-        own_bodies, own_joints = dict(parts.bodies()), dict(parts.joints())
+        own_bodies, own_joints = bodies_and_joints(name, described(entry, f"bodies.{name}", context), context)
         taken = [f"bodies.{part}" for part in own_bodies if part in bodies]
         taken += [f"joints.{part}" for part in own_joints if part in added_joints]
         if taken:
@@ -103,6 +112,31 @@ def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
         added_bodies |= own_bodies
         added_joints |= own_joints
     return {**raw, "bodies": added_bodies, "joints": added_joints}
+
+
+def described(entry: object, where: str, context: Context) -> SceneFlexibleBody:
+    """Return the description of a flexible body; `where` is its path in the scene. Raises InputError."""
+    with located(where):
+        return SceneFlexibleBody.model_validate(entry, context=dict(context))
+
+
+def bodies_and_joints(
+    name: str, body: SceneFlexibleBody, context: Context, where: str = ""
+) -> tuple[dict[str, Body], dict[str, Joint]]:
+    """Return the bodies and joints of a flexible body by their names; its path is ``bodies.NAME`` unless given. Raises InputError."""
+    folder = Path(context.get(FOLDER) or "")
+    with prefixed(f"{where or f'bodies.{name}'}: "):
+        parts = _Parts(name, body, reduced_body(body, folder), folder)
+    return dict(parts.bodies()), dict(parts.joints())
+
+
+def placed(body: SceneFlexibleBody, frame: Any) -> SceneFlexibleBody:
+    """Return a flexible body of a part in ground axes. `frame`: a SpatialFrame; of a mirrored part, the mesh is mirrored too."""
+    axes = "".join(axis for axis, sign in zip("xyz", frame.signs * body.signs, strict=True) if sign < 0.0)
+    return body.model_copy(update={
+        "position": frame.to_outside(body.position), "orientation": frame.oriented(body.orientation),
+        "velocity": frame.turned(body.velocity), "omega": frame.turned_rate(body.omega), "mirror": axes or None,
+    })  # fmt: skip
 
 
 def described_bodies(bodies: Mapping[str, object]) -> dict[str, SceneFlexibleBody]:

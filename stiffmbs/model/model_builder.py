@@ -45,7 +45,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
 
         Returns
         -------
-        BodyHandle, BeamHandle or None
+        BodyHandle, BeamHandle, FlexibleHandle or None
             For a body, its handle, for use in markers and formulas and to change the body.
 
         Raises

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from pydantic import ValidationError as PydanticError
 
-from ..elements.body import FLEXIBLE
+from ..elements.body import is_flexible
 from ..elements.roads.field import read_roads
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
@@ -251,7 +251,7 @@ def _with_flexible_bodies(raw: dict[str, object], context: Mapping[str, object])
     """Return a scene with its flexible bodies expanded; their package is imported only for these."""
     bodies = raw.get("bodies")
     entries = bodies.values() if isinstance(bodies, dict) else ()
-    if not any(isinstance(entry, dict) and entry.get("type") == FLEXIBLE for entry in entries):
+    if not any(is_flexible(entry) for entry in entries):
         return raw
     from .flexible import with_flexible_bodies
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..errors import InputError
@@ -81,3 +81,29 @@ class Handle:
     def __repr__(self) -> str:
         found = vars(self)["_model"].bodies.get(self.name, "removed from the model")
         return f"<{type(self).__name__} '{self.name}': {found!r}>"
+
+
+class Handles(Mapping[str, Handle]):
+    """Bodies of a part that has several, in a model built in Python, by name and in order."""
+
+    what: ClassVar[str]
+
+    def __init__(self, name: str, bodies: Mapping[str, Handle]) -> None:
+        self.name, self._bodies = name, bodies
+
+    def __getitem__(self, body: str) -> Handle:
+        return self._bodies[body]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._bodies)
+
+    def __len__(self) -> int:
+        return len(self._bodies)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}: {', '.join(self._bodies)}>"
+
+    def __getattr__(self, body: str) -> Handle:
+        if body.startswith("_") or body not in self._bodies:
+            raise AttributeError(f"{self.name}: found no {self.what} '{body}'{instead_of(body, self._bodies)}")
+        return self._bodies[body]

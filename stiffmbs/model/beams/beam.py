@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -10,9 +10,8 @@ from pydantic import Field, field_validator, model_validator
 
 from ...elements.body import LineBody, check_names
 from ...errors import InputError, prefixed
-from ...reading.did_you_mean import instead_of
 from ...reading.fields import Measured
-from ...reading.handle import Handle
+from ...reading.handle import Handles
 from ...reading.units import si
 from .axis import Piece, arc_through, pieces_through
 from .division import ElementsField
@@ -23,28 +22,10 @@ InertiaPerLength = Annotated[float, Measured("inertia per length", above=0)]
 MassPerLength = Annotated[float, Measured("mass per length", above=0)]
 
 
-class BeamHandle(Mapping[str, Handle]):
+class BeamHandle(Handles):
     """Nodes of a beam in a model built in Python, by name and in order: ``strip.start``, ``strip["node1"]``."""
 
-    def __init__(self, name: str, nodes: Mapping[str, Handle]) -> None:
-        self.name, self._nodes = name, nodes
-
-    def __getitem__(self, node: str) -> Handle:
-        return self._nodes[node]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._nodes)
-
-    def __len__(self) -> int:
-        return len(self._nodes)
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.name}: {', '.join(self._nodes)}>"
-
-    def __getattr__(self, node: str) -> Handle:
-        if node.startswith("_") or node not in self._nodes:
-            raise AttributeError(f"{self.name}: found no node '{node}'{instead_of(node, self._nodes)}")
-        return self._nodes[node]
+    what = "node"
 
 
 class Beam(LineBody):

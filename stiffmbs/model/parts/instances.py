@@ -6,9 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...elements.body import check_names
+from ...elements.body import check_names, is_flexible
 from ...errors import InputError
 from ...reading.fields import located, mapping
+from ...reading.files.files_read import Context
 from ...reading.files.yaml_text import Content
 from ...reading.names import MOUNT, beginnings
 from ...reading.units.units import Quantity
@@ -44,6 +45,8 @@ class Instance:
     inner: tuple[str, ...] = ()  # local names of nested instances
     mounts: Mapping[str, str] = field(default_factory=dict)  # further bodies that it connects to, by local name
     words: Mapping[str, str] = field(default_factory=dict)  # chosen words for it and for nested parts, by choice
+    flexible: Mapping[str, Any] = field(default_factory=dict)  # descriptions of its flexible bodies by local name
+    made: Mapping[str, Sequence[str]] = field(default_factory=dict)  # local names of their bodies and joints by section
     wheel: tuple[float, ...] | None = None  # centre of the wheel of a suspension in the part's frame, m
 
     @property
@@ -53,22 +56,27 @@ class Instance:
 
     def names(self, section: str) -> Iterator[str]:
         """Yield the full names in a section."""
-        yield from (f"{self.name}.{name}" for name in self.sections.get(section) or {})
+        yield from (f"{self.name}.{name}" for name in self._local(section))
 
     def local(self) -> dict[str, str]:
         """Return full names by local name."""
-        named = [*self.inner, *(name for section in NAMED for name in self.sections.get(section) or {})]
+        named = [*self.inner, *(name for section in NAMED for name in self._local(section))]
         return {name: f"{self.name}.{name}" for name in named}
+
+    def _local(self, section: str) -> Iterator[str]:
+        yield from self.sections.get(section) or {}
+        yield from self.made.get(section) or ()
 
 
 @dataclass
 class Instances:
     """Reader of the instances of a scene, in order from outer to inner.
 
-    `changes`: values set in instances from outside; applied changes are removed from the list. `words`: choices of the
-    scene. `dimensions`: 2 or 3.
+    `context`: parameters, tables and folder of the scene. `changes`: values set in instances from outside; applied changes are
+    removed from the list. `words`: choices of the scene. `dimensions`: 2 or 3.
     """
 
+    context: Context
     definitions: Definitions
     changes: list[tuple[str, object]]
     words: Mapping[str, str]
@@ -132,15 +140,38 @@ class Instances:
             for section in (*NAMED, "markers") if definition.get(section) is not None
         }  # fmt: skip
         sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.", f"{name}.")
+        sections, flexible, made = self._without_flexible(sections, f"parts.{use.part}.bodies", own)
         used = definition.get("use") or {}
         inner = tuple(repeat_entries(f"parts.{use.part}.use", used, own)) if isinstance(used, dict) else ()
         _check_sections(use.part, sections, inner, vectors)
         mounts = mounts_of(definition.get("mounts"), use, where)
         self._count(where, sections)
-        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words, wheel)
+        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words, flexible, made, wheel)
         self.found.append(instance)
         if used:
             self.read(used, own, instance, depth + 1)
+
+    def _without_flexible(
+        self, sections: Content, where: str, parameters: Mapping[str, Quantity]
+    ) -> tuple[Content, dict[str, Any], dict[str, list[str]]]:
+        """Return the sections without flexible bodies, their descriptions, and the names of their bodies and joints."""
+        bodies, made = sections.get("bodies"), {"bodies": list[str](), "joints": list[str]()}
+        flexible: dict[str, Any] = {}
+        if not isinstance(bodies, dict) or not any(is_flexible(entry) for entry in bodies.values()):
+            return sections, {}, {}
+        from ..flexible import bodies_and_joints, described
+
+        if self.dimensions != 3:
+            raise InputError(f"{where}: found a flexible body, expected dimensions: 3")
+        context = {**self.context, "parameters": parameters}
+        for name, entry in bodies.items():
+            if is_flexible(entry):
+                flexible[name] = described(entry, f"{where}.{name}", context)
+                own_bodies, own_joints = bodies_and_joints(name, flexible[name], context, f"{where}.{name}")
+                made["bodies"] += own_bodies
+                made["joints"] += own_joints
+        left = {name: entry for name, entry in bodies.items() if name not in flexible}
+        return {**sections, "bodies": left}, flexible, made
 
     def _count(self, where: str, found: object) -> None:
         self.values += _size(found, MOST_VALUES)

@@ -54,7 +54,11 @@ def with_parts(
     parts, used = raw.pop("parts", None), raw.pop("use", None)
     left = list(changes)
     instances = Instances(
-        Definitions(parts, _frame_kind(scene)[0]), left, context["words"], scene.model_fields["dimensions"].default
+        context,
+        Definitions(parts, _frame_kind(scene)[0]),
+        left,
+        context["words"],
+        scene.model_fields["dimensions"].default,
     )
     if used is not None:
         instances.read(used, context["parameters"])
@@ -149,6 +153,8 @@ class _Placed:
         outside = self.context["parameters"]
         own = _Values({name: value for name, value in instance.parameters.items() if outside.get(name) != value})
         names = replace(self.context["names"], local=local, values=own, mounts=frozenset(mounts))
+        for name, described in instance.flexible.items():
+            self._add_flexible(instance, name, described, in_ground)
         found = self._read(instance, names)
         if instance.part in shipped_parts():  # their frames have y to the left
             bodies = {name: body for name, (body, _) in further.items() if body != GROUND}
@@ -170,6 +176,16 @@ class _Placed:
             self._put("states", instance, name, mirror.mirrored_state(state, where) if mirror else state)
         for name, request in found.requests.items():
             self._put("requests", instance, name, request)
+
+    def _add_flexible(self, instance: Instance, name: str, described: Any, in_ground: Any) -> None:
+        """Add the bodies and joints of a flexible body of an instance."""
+        from ..flexible import bodies_and_joints, placed
+
+        full, where = f"{instance.name}.{name}", f"{instance.where}.bodies.{name}"
+        bodies, joints = bodies_and_joints(full, placed(described, in_ground), self.context, where)
+        for section, made in (("bodies", bodies), ("joints", joints)):
+            for own, value in made.items():
+                self._put(section, instance, own.removeprefix(f"{instance.name}."), value)
 
     def _read(self, instance: Instance, names: Names) -> Any:
         variables = meant_within(self.context["variables"], instance.parameters, self.context["parameters"])

@@ -84,9 +84,10 @@ class SpatialFrame(Frame):
 
     def oriented(self, p: Quaternion) -> Quaternion:
         """Transform an orientation in the part to the outer axes."""
-        return product(self.orientation, (p[0], *self._as_rotation(p[1:])))
+        return product(self.orientation, (p[0], *self.turned_rate(p[1:])))
 
-    def _as_rotation(self, v: tuple[float, ...]) -> tuple[float, ...]:
+    def turned_rate(self, v: tuple[float, ...]) -> tuple[float, ...]:
+        """Transform an angular velocity in the axes of a body of the part to those of the placed body."""
         return tuple(sign * part for sign, part in zip(self.rotation_signs, v, strict=True))
 
     def placed(self, marker: Any) -> Any:
@@ -103,7 +104,7 @@ class SpatialFrame(Frame):
         inertia = np.outer(self.signs, self.signs) * np.array(body.inertia)
         return {
             "orientation": self.oriented(body.orientation),
-            "omega": self._as_rotation(body.omega),
+            "omega": self.turned_rate(body.omega),
             "center_of_mass": self.mirror().turned(body.center_of_mass),
             "inertia": tuple(tuple(float(part) for part in row) for row in inertia),
         }

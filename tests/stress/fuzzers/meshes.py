@@ -22,7 +22,7 @@ from stiffmbs.flexible_bodies.mesh_files import for_reader
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.flexible_bodies.reduction import ReducedBody
 from tests.flexible_bodies.bars import bar, mesh_of_bar
-from tests.flexible_bodies.shells import surface
+from tests.flexible_bodies.shells.meshes import surface
 
 from ..case import Outcome, Verdict
 from .files import told

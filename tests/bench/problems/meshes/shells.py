@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.flexible_bodies.published_shells import BEAMS, PROBLEMS, STRESSES
-from tests.flexible_bodies.shells import KINDS
+from tests.flexible_bodies.shells.meshes import KINDS
+from tests.flexible_bodies.shells.published import BEAMS, PROBLEMS, STRESSES
 
 from ...benchmark import Row
 

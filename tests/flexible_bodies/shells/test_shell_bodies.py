@@ -24,9 +24,9 @@ from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, 
 from stiffmbs.flexible_bodies.shells.stress import _Motion
 from stiffmbs.show.drawing.deformed import deformed_body
 
-from .bars import face
-from .shells import KINDS, surface
-from .test_geometric_stiffness import lowest_eigenvalue
+from ..bars import face
+from ..test_geometric_stiffness import lowest_eigenvalue
+from .meshes import KINDS, surface
 
 LENGTH, WIDTH, THICK = 0.4, 0.1, 4e-3
 ALUMINIUM = Material(E=7e10, nu=0.3, density=2700.0)

@@ -17,8 +17,8 @@ from stiffmbs.flexible_bodies.stress import principal_stresses, von_mises
 from stiffmbs.results.flexible_motion import FlexibleMotion
 from stiffmbs.show.drawing.deformed import deformed_body
 
-from .published_shells import STRESSES
-from .shells import KINDS, places, shell, surface, under
+from .meshes import KINDS, places, shell, surface, under
+from .published import STRESSES
 
 TURN = Rotation.from_rotvec([0.4, -0.7, 0.3]).as_matrix()
 LENGTH, WIDTH, THICK, FORCE = 1.0, 0.2, 0.01, 100.0

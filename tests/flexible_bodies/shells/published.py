@@ -11,7 +11,7 @@ import numpy as np
 
 from stiffmbs.flexible_bodies.shells.surfaces import surfaces_of
 
-from .shells import frequencies, places, pressure, shell, surface, under
+from .meshes import frequencies, places, pressure, shell, surface, under
 
 E, NU, THIN = 1e7, 0.3, 1e-3
 """Of plates with a side of 1."""

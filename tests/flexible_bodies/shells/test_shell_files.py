@@ -10,8 +10,8 @@ from stiffmbs.flexible_bodies.description import FlexibleBody, Material
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduction import reduce, rigid_body
 
-from .bars import STEEL, mesh_of_bar
-from .shells import surface
+from ..bars import STEEL, mesh_of_bar
+from .meshes import surface
 
 SOFT = Material(E=1e9, nu=0.0, density=1200.0)
 BOTH, THICKNESSES = {"left": STEEL, "right": SOFT}, {"left": 2e-3, "right": 5e-3}

@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 from stiffmbs.flexible_bodies.finite_elements import rigid_motions
 from stiffmbs.flexible_bodies.shells.curvature import coarseness
 
-from .published_shells import BEAMS, PROBLEMS, hemisphere, square, straight_beam
-from .shells import KINDS, places, pressure, shell, surface, under
+from .meshes import KINDS, places, pressure, shell, surface, under
+from .published import BEAMS, PROBLEMS, hemisphere, square, straight_beam
 
 E, NU, THICK = 1e6, 0.3, 0.02
 ALL = range(6)
