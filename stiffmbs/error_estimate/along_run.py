@@ -116,13 +116,16 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         if k:
             error, shift = _restarted(dynamics, prepared[-1], each, error, shift, bool(alike[own].all()))
         errors, slopes = _transported(transport, each, error)
-        times, changes = missed_forces(dynamics, each.states, errors)
+        of_shift = shift * motion(dynamics.system, each.states)
+        lost = np.append(_are_lost(dynamics.system, q[own], errors + of_shift), True)
+        known = slice(int(lost.argmax()))  # later errors are no distances from kinks
+        times, changes = missed_forces(dynamics, each.states.at(known), (errors + of_shift)[known])
         if len(times):
             each = _with_changes(each, times, changes)
             errors, slopes = _transported(transport, each, error)
         error = errors[-1]
         prepared.append(each)
-        of_pieces.append((errors + shift * motion(dynamics.system, each.states), slopes))
+        of_pieces.append((errors + of_shift, slopes))
     errors = np.concatenate([each for each, _ in of_pieces])
     lost = _are_lost(dynamics.system, q, errors)
     if lost.any():
