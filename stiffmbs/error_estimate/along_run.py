@@ -117,14 +117,12 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         if k:
             error, shift = _restarted(dynamics, prepared[-1], each, error, shift, bool(alike[own].all()))
         errors, slopes = _transported(transport, each, error)
+        of_shift = shift * motion(dynamics.system, each.states)
         if kinked:
-            missed = missed_forces(dynamics, each.states, errors)
-            if len(missed[0]):
-                each = _with_changes(each, *missed)
-                errors, slopes = _transported(transport, each, error)
+            each, errors, slopes = _with_missed_forces(dynamics, transport, each, (errors, slopes), of_shift)
         error = errors[-1]
         prepared.append(each)
-        of_pieces.append((errors + shift * motion(dynamics.system, each.states), slopes))
+        of_pieces.append((errors + of_shift, slopes))
     errors = np.concatenate([each for each, _ in of_pieces])
     lost = _are_lost(dynamics.system, q, errors)
     if lost.any():
@@ -307,6 +305,27 @@ def _with_large_errors(
         kept = np.where(converged, missed[steps] & ~is_stiff, missed[steps] | (errors < before[steps]))
         found[steps[kept]], defects[steps[kept]] = exact[kept], np.nan
     return found
+
+
+def _with_missed_forces(
+    dynamics: Dynamics,
+    transport: Transport,
+    each: _Prepared,
+    found: tuple[np.ndarray, np.ndarray],
+    of_shift: np.ndarray,
+) -> tuple[_Prepared, np.ndarray, np.ndarray]:
+    """Return a piece, its errors and their rates with forces beyond kinks that it does not reach by its errors.
+
+    `found`: errors and rates without them. `of_shift`: further errors by a shift of time.
+    """
+    errors = found[0] + of_shift
+    lost = np.append(_are_lost(dynamics.system, each.states.q, errors), True)
+    known = slice(int(lost.argmax()))  # later errors are no distances from kinks
+    times, changes = missed_forces(dynamics, each.states.at(known), errors[known])
+    if not len(times):
+        return each, *found
+    each = _with_changes(each, times, changes)
+    return each, *_transported(transport, each, found[0][0])
 
 
 def _with_changes(each: _Prepared, times: np.ndarray, changes: np.ndarray) -> _Prepared:

@@ -21,8 +21,8 @@ from .parameters import ESTIMATE
 
 PLACES = np.linspace(0.0, 1.0, 9)
 """Places in an interval at which a least distance is searched, again and again."""
-LOCATED = float(np.sqrt(np.finfo(float).eps))
-"""Part of an interval to which rounding lets an extremum be located."""
+SEARCHES = int(np.ceil(np.log(np.finfo(float).eps) / (2.0 * np.log(PLACES[2]))))
+"""Searches, each between the neighbours of the last least distance: rounding lets an extremum be located to the root of its unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +105,8 @@ def _lowest(
     curves: _Curves, low: np.ndarray, high: np.ndarray, kinks: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the times of the least distances within intervals, s, and these distances."""
-    one, least = np.arange(len(low)), np.max(high - low) * LOCATED
-    while np.max(high - low) > least:
+    one = np.arange(len(low))
+    for _ in range(SEARCHES):
         times = low[:, None] + (high - low)[:, None] * PLACES
         distances = curves.distances(times, kinks, sides)
         k = np.argmin(distances, axis=1)

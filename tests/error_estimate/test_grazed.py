@@ -3,13 +3,14 @@
 A mass on a spring touches, at each of its maxima, a stop that pushes another mass: x = cos(w t), and a force k (x - c).
 """
 
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.error_estimate import along_run
+from stiffmbs.error_estimate import along_run, grazed
 
 W, T = 200.0, 0.3
 FORMULA, TABLE = "{k}*max(q.x - {c}, 0)", "law(q.x - {c})"
@@ -72,3 +73,36 @@ def test_a_contact_beyond_the_errors_is_not(rtol):
     found = run(FORMULA, 1e9, 1.02, solver="bdf", rtol=rtol)
     assert found.errors["q.x"].over_time > 1e-6
     assert found.errors["b.x"].over_time == 0.0
+
+
+def test_a_least_distance_within_the_rounding_of_times_is_found():
+    """The search did not end where intervals of 1 ns, in a short contact, were to become shorter than the rounding of 1 s."""
+    lowest, searches = 1.0 + 3e-10, iter(range(100))
+
+    def distances(t, kinks, sides):
+        next(searches)
+        return (t - lowest) ** 2
+
+    curves, kinks = SimpleNamespace(distances=distances), np.array([0])
+    found, least = grazed._lowest(curves, np.array([1.0]), np.array([1.0 + 1e-9]), kinks, np.ones(1))
+    assert abs(found[0] - lowest) < 1e-15
+    assert least[0] < 1e-30
+
+
+def test_errors_of_time_and_of_states_that_cancel_reach_no_contact():
+    """A stop that is barely touched turns errors into a shift of time and its opposite in the states: 140 times the true error.
+
+    Of two stops the motion touches one, and is 2 um away from the other.
+    """
+    scene = """
+        gravity: [0, 0]
+        parameters: {k: 32596.23, left: 0.9999882102, right: 1.0000021387}
+        bodies: {q: {mass: 1, inertia: 1, position: [0.4115968762408526, 0], velocity: [34.125478586670525, 0]}}
+        forces: {spring: {type: force, i: q, force: ["-1402.0769294634733*q.x - k*max(q.x - right, 0) + 17459.163*max(-q.x - left, 0)", 0]}}
+        run: {duration: 1.5134552627746631, points: 1001}
+        """
+    found = {}
+    for rtol in (2.8482707294149758e-06, 1e-11):
+        found[rtol] = stiffmbs.run(stiffmbs.read_scene(scene), solver="bdf", rtol=rtol, errors=True)
+    rough, fine = found.values()
+    assert rough.errors["q.x"].over_time < 5.0 * np.abs(rough["q.x"] - fine["q.x"]).max()
