@@ -45,13 +45,16 @@ class _Curves:
         return cls(dynamics, at.t, errors, Curve.of_ends(at.t[pairs], z[pairs], rates[pairs]))
 
     def states(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return q, u and errors at some times, shape (n,)."""
+        """Return q and u, projected onto the constraints, and errors at some times, shape (n,)."""
         k = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         part = (t - self.t[k]) / (self.t[k + 1] - self.t[k])
         _, z = self.curve.at(part[:, None], k)
         errors = self.errors[k] + part[:, None] * (self.errors[k + 1] - self.errors[k])
-        q, u = np.hsplit(z, [self.dynamics.system.n_q])
-        return *displaced(self.dynamics.system, q, u, 0.0 * errors), errors
+        q, u = displaced(self.dynamics.system, *np.hsplit(z, [self.dynamics.system.n_q]), 0.0 * errors)
+        if self.dynamics.system.n_c:
+            at = evaluated(self.dynamics, t, q, u)
+            q, u = at.q, at.u
+        return q, u, errors
 
     def distances(self, t: np.ndarray, kinks: np.ndarray, sides: np.ndarray) -> np.ndarray:
         """Return the distances from one kink each, without the errors, at times of shape (kinks, n).
@@ -74,7 +77,7 @@ def missed_forces(dynamics: Dynamics, at: Evaluated, errors: np.ndarray) -> tupl
             starts, ends = _beyond(curves, at)
             if len(starts):
                 starts, ends = _united(starts, ends)
-                return 0.5 * (starts + ends), _missed(curves, starts, ends)
+                return 0.5 * (starts + ends), _missed(curves, at, starts, ends)
     return np.empty(0), np.empty((0, errors.shape[1]))
 
 
@@ -133,11 +136,11 @@ def _united(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return starts[first], ends[np.append(first[1:], True)]
 
 
-def _missed(curves: _Curves, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return the integrals of F(z) - F(z - e) - J e over intervals, shape (intervals, full)."""
+def _missed(curves: _Curves, at: Evaluated, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return the integrals of F(z) - F(z - e) - J e over intervals, with F(z) before the kink, shape (intervals, full)."""
     times = (starts[:, None] + (ends - starts)[:, None] * GAUSS_NODES).ravel()
     q, u, errors = curves.states(times)
-    small = ESTIMATE.difference / np.abs(errors).max(axis=1, keepdims=True)
+    small = ESTIMATE.difference / np.maximum(np.abs(errors).max(axis=1, keepdims=True), np.finfo(float).tiny)
 
     def rates(moves: np.ndarray) -> np.ndarray:
         """Return F of the states after some moves (dq, du, ds)."""
@@ -146,5 +149,31 @@ def _missed(curves: _Curves, starts: np.ndarray, ends: np.ndarray) -> np.ndarray
 
     here, near, there = rates(0.0 * errors), rates(-small * errors), rates(-errors)
     missed = here - there - (here - near) / small
+    beyond = _are_beyond(curves, at, times, q, u)
+    missed[beyond] = _of_rows(curves, at, times[beyond]) - there[beyond]
     of_intervals = missed.reshape(len(starts), len(GAUSS_NODES), -1)
     return np.asarray(np.einsum("g,ngf->nf", GAUSS_WEIGHTS, of_intervals) * (ends - starts)[:, None])
+
+
+def _are_beyond(curves: _Curves, at: Evaluated, times: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return a mask of states between the rows that are beyond a kink, which their rows and the steps do not show.
+
+    Positions that drives prescribe have no error at the rows, but the run may take others between them.
+    """
+    before = np.clip(np.searchsorted(at.t, times, side="right") - 1, 0, len(at.t) - 2)
+    signs = (
+        np.sign(distances_from_kinks(curves.dynamics, *state))
+        for state in ((times, q, u), *((at.t[k], at.q[k], at.u[k]) for k in (before, before + 1)))
+    )
+    own, left, right = signs
+    return np.asarray(((left == right) & (own != left)).any(axis=1))
+
+
+def _of_rows(curves: _Curves, at: Evaluated, times: np.ndarray) -> np.ndarray:
+    """Return the rates at some times by cubic interpolation between rows, shape (times, full)."""
+    rates = motion(curves.dynamics.system, at)
+    first = np.clip(np.searchsorted(at.t, times, side="right") - 2, 0, max(len(at.t) - 4, 0))
+    rows = first[:, None] + np.arange(min(4, len(at.t)))
+    begin, end = at.t[rows[:, 0]], at.t[rows[:, -1]]
+    curve = Curve.through(at.t[rows], rates[rows], begin, end)
+    return curve.at(((times - begin) / (end - begin))[:, None], np.arange(len(times)))[1]

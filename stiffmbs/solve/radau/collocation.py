@@ -36,6 +36,7 @@ class Collocation:
     - `bubble` of shape (s + 2,): coefficients of the polynomial, zero at 0 and 1, by which the error estimate corrects
       the solution within the step.  The polynomial of the stages has the defect f(y_n) - u'(0) = K prod_i (-c_i) at 0,
       hence K prod_i (x - c_i) within the step up to the next order, whose integral is the correction.
+    - `most_between`: largest correction of the solution between the nodes, for a defect f(y_n) - u'(0) of 1.
     """
 
     nodes: np.ndarray
@@ -49,6 +50,7 @@ class Collocation:
     weights: np.ndarray
     bubble: np.ndarray
     between: np.ndarray
+    most_between: float
 
     @property
     def stages(self) -> int:
@@ -66,9 +68,21 @@ def radau(stages: int) -> Collocation:
     transform, gamma, alpha, beta = _real_form(derivative)
     at_start = _barycentric(nodes) * np.prod(-nodes) / -nodes
     error, inverse = -derivative.T @ at_start, np.linalg.inv(transform)
-    bubble = gamma / np.prod(-nodes) * Polynomial.fromroots(nodes).integ().coef
+    correction = Polynomial.fromroots(nodes).integ() / np.prod(-nodes)
+    most = float(np.abs(correction(nodes)).max())  # its extrema are the nodes
     return Collocation(
-        nodes, derivative, transform, inverse, gamma, alpha, beta, error, weights, bubble, _between(points)
+        nodes,
+        derivative,
+        transform,
+        inverse,
+        gamma,
+        alpha,
+        beta,
+        error,
+        weights,
+        gamma * correction.coef,
+        _between(points),
+        most,
     )
 
 

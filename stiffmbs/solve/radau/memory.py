@@ -157,7 +157,7 @@ class Radau:
             "n_terms": n_terms, "terms": np.zeros(n_terms), "terms_aside": np.zeros(n_terms + efforts["n_levers"] + efforts["n_slopes"]),
             "entries": np.zeros(len(number)), **vectors, **at, "output_correction": ida.output_correction.table, "error_norm": ida.error_norm.table,
             "step_bound": ida.step_bound.table,
-            **_angles(equations), "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
+            **_angles(equations), **_positions(equations), "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
             **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},
             "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
@@ -190,10 +190,24 @@ def _angles(equations: Equations) -> dict[str, Any]:
     return {"n_angles": int(both.sum()), "angle": np.int64(angle[both]), "spin": np.int64(spin[both])}
 
 
+def _positions(equations: Equations) -> dict[str, Any]:
+    """Return the unknowns that are positions of bodies."""
+    found = equations.at["q"][: equations.system.n_pose]
+    found = found[found != ABSENT]
+    return {"n_positions": len(found), "position": np.int64(found)}
+
+
 def _arrays(c: Collocation) -> dict[str, Any]:
     """Return the contents of the table of a method."""
     arrays = {name: np.ascontiguousarray(value) for name, value in vars(c).items() if isinstance(value, np.ndarray)}
-    return {**arrays, "stages": c.stages, "pairs": len(c.alpha), "gamma": c.gamma, "n_between": len(c.between)}
+    return {
+        **arrays,
+        "stages": c.stages,
+        "pairs": len(c.alpha),
+        "gamma": c.gamma,
+        "n_between": len(c.between),
+        "most_between": c.most_between,
+    }
 
 
 def _costs(stages: int, cost: ImplicitCost, pair_cost: float, parameters: RadauParameters) -> dict[str, float]:

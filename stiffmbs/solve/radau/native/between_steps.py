@@ -129,7 +129,7 @@ def _corrected(x, c, place, count):
 
 
 @compiled
-def _most_moved_within(c):
+def most_moved_within(c):
     """Return the largest change of a state within a step, in tolerances: its error is that of the estimate."""
     return POLISHING.most_moved * max(1.0, c.relaxed)
 
@@ -140,13 +140,13 @@ def _closed_at(x, c, t, place):
     _corrected(x, c, place, 0)
     if x.n_closing > 0:
         polynomial_rates(x, place, x.yp_stage)
-    if closed(x, t, _most_moved_within(c)) != OPEN:
+    if closed(x, t, most_moved_within(c)) != OPEN:
         return True
     exchange_terms(x)
     _corrected(x, c, place, 0)
     polynomial_rates(x, place, x.yp_stage)
     h = x.h_factored
-    succeeded = factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True) and closed(x, t, _most_moved_within(c)) != OPEN
+    succeeded = factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True) and closed(x, t, most_moved_within(c)) != OPEN
     exchange_terms(x)
     factored(x, c, h, t, x.y_stage, x.yp_stage, False)
     if not succeeded:
@@ -166,7 +166,7 @@ def _find_corrections(x, c):
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
-        outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
+        outcome = closed(x, x.t - (1.0 - place) * x.h_past, most_moved_within(c))
         if outcome == OPEN:
             return
         for k in range(x.n_all):  # divided difference: earlier terms are in the state that was closed
@@ -179,7 +179,8 @@ def _find_corrections(x, c):
 @compiled
 def dense_output(x, t, place, target):
     """Compute the state at a place of the last step; return False if it stays open."""
-    if not (x.h_past > output_correction_view(x.output_correction).long and x.h_factored > 0.0 and place < 1.0):
+    is_long = x.h_past > output_correction_view(x.output_correction).long or x.apart > x.newton
+    if not (is_long and x.h_factored > 0.0 and place < 1.0):
         polynomial(x, place, x.n, target)
         return True
     c = collocation_view(ints(x.methods[x.method_past]))

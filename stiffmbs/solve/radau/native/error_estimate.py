@@ -12,6 +12,7 @@ from stiffmbs.compile.machine.native.evaluate import add_rate_terms
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.events.native.parameters import SEARCH
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
+from stiffmbs.solve.radau.native.between_steps import most_moved_within
 from stiffmbs.solve.radau.native.memory import basis
 from stiffmbs.solve.radau.native.newton import add_efforts, residual, size_in_tolerances, solved_real
 
@@ -141,6 +142,24 @@ def _wandering(x, c):
 
 
 @compiled
+def _between_nodes(x, c, h):
+    """Return the size of the errors of prescribed positions between the nodes, where events are searched, in tolerances.
+
+    Drives and joints prescribe positions at the nodes, so that the estimate in them is only rounding.
+    """
+    total = 0.0
+    for i in range(x.n_positions):
+        k = x.position[i]
+        defect = h * x.yp[k]
+        for j in range(c.stages):
+            defect += c.error[j] * x.z[j * x.n_all + k]
+        if abs(x.error[k]) <= x.rtol * abs(defect):
+            part = c.most_between * defect * x.weight[k]
+            total += part * part
+    return sqrt(total / x.n_tested)
+
+
+@compiled
 def _turned_apart(x, c, h):
     """Return the largest difference of the rate of an angle's polynomial from its angular velocity at a stage, times the step.
 
@@ -195,5 +214,7 @@ def error_of_step(x, c, h, untested):
     if untested and error < 1.0:
         error = max(error, _filtered(x, c, h))
     wandering = _wandering(x, c) if x.acting == 0 else 0.0  # efforts of decaying motions are removed or closed
+    x.apart = _between_nodes(x, c, h) if x.has_kinks and x.n_closing > 0 else 0.0
+    wandering = max(wandering, x.apart / most_moved_within(c))
     wandering = max(wandering, _turned_apart(x, c, h) / SEARCH.turned)
     return max(error, wandering) if wandering > 1.0 else error

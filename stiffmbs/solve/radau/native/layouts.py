@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, IN
 
 COLLOCATION = Layout({
     "stages": INT, "pairs": INT, "nodes": FLOATS, "derivative": FLOATS, "transform": FLOATS, "inverse": FLOATS, "gamma": FLOAT_CELL, "relaxed": FLOAT_CELL, "alpha": FLOATS,
-    "beta": FLOATS, "error": FLOATS, "weights": FLOATS, "bubble": FLOATS, "n_between": INT, "between": FLOATS, "setup_cost": FLOAT_CELL, "iteration_cost": FLOAT_CELL, "keep": FLOAT_CELL,
+    "beta": FLOATS, "error": FLOATS, "weights": FLOATS, "bubble": FLOATS, "n_between": INT, "between": FLOATS, "most_between": FLOAT_CELL, "setup_cost": FLOAT_CELL, "iteration_cost": FLOAT_CELL, "keep": FLOAT_CELL,
 })  # fmt: skip
 """Coefficients of `stiffmbs.solve.radau.collocation.Collocation`; `relaxed` is the tolerance of the error estimate
 relative to the requested one. Costs of the matrices of a step and of an iteration, in any unit. Convergence rate below
@@ -20,12 +20,12 @@ RADAU = Layout({
     "n_terms": INT, "terms": FLOATS, "terms_aside": FLOATS, "entries": FLOATS, "n_all": INT, "n_efforts": INT, "acting": INT_CELL, "effort_source": INDICES,
     "n_levers": INT, "lever_source": INDICES, "lever_effort": INDICES, "lever_unknown": INDICES, "lever_factor": FLOATS, "lever": FLOATS,
     "n_slopes": INT, "slope_source": INDICES, "slope_effort": INDICES, "slope_unknown": INDICES, "slope_factor": FLOATS, "slope": FLOATS, "misfit": FLOATS, "at_b": INT, "b": FLOATS, "at_x": INT, "x": FLOATS, "at_pair_b": INT, "pair_b": FLOATS, "at_pair_x": INT, "pair_x": FLOATS,
-    "output_correction": INTS, "error_norm": INTS, "step_bound": INTS, "n_angles": INT, "angle": INTS, "spin": INTS,
+    "output_correction": INTS, "error_norm": INTS, "step_bound": INTS, "n_angles": INT, "angle": INTS, "spin": INTS, "n_positions": INT, "position": INTS,
     "y": FLOATS, "yp": FLOATS, "y_stage": FLOATS, "yp_stage": FLOATS, "z": FLOATS, "r": FLOATS, "d": FLOATS, "past": FLOATS, "y_past": FLOATS, "error": FLOATS, "weight": FLOATS,
     "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "decaying": INT_CELL,
     "h_factored": FLOAT_CELL, "stages_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "ahead": INT_CELL, "error_size": FLOAT_CELL, "damped": INT_CELL, "left": FLOAT_CELL, "suggested": FLOAT_CELL,
-    "corrections": FLOATS, "n_corrections": INT_CELL, "suffice": INT_CELL,
+    "corrections": FLOATS, "apart": FLOAT_CELL, "n_corrections": INT_CELL, "suffice": INT_CELL,
     "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
     "has_kinks": INT,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
@@ -43,7 +43,7 @@ their values; the number of efforts that are unknowns in this step, all or none;
 in each stage.  Vectors of a linear system, real and complex.  The state y and y' at t; stages and residuals; the polynomial of the last
 step with its beginning; error estimate and inverse tolerances.
 
-Unknowns that are angles of bodies in the plane, and their angular velocities.
+Unknowns that are angles of bodies in the plane, and their angular velocities. Unknowns that are positions.
 
 Rows without rates have the value 1 in `algebraic`; `n_closing` of these belong to joints.
 
