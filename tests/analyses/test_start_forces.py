@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import stiffmbs
@@ -144,3 +146,49 @@ run: {duration: 1e-4}
 )
 def test_examples_start_without_a_note(name: str) -> None:
     assert not starts(stiffmbs.check(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")).messages)
+
+
+OFF_ITS_PLACE = """
+dimensions: 3
+bodies:
+  block: {mass: 3, inertia: [0.01, 0.01, 0.01], position: [0.51, 0, 0]}
+forces:
+  strut: {type: beam, i: block, j: ground, length: 0.5, young: 210 GPa, shear_modulus: 80 GPa, area: 3e-4, torsion: 1e-8, iyy: 5e-9, izz: 5e-9}
+run: {duration: 0.001, points: 3}
+"""
+TOO_FAR_APART = """
+bodies:
+  rod: {type: beam, start: [0, 0], end: [1, 0], elements: 4, interpolation: INTERPOLATION, stiffness: [6e7, 2e7, 2e3], mass_per_length: 2.4, inertia_per_length: 6e-5}
+joints:
+  left: {type: revolute, i: rod.start, j: ground}
+  right: {type: revolute, i: rod.end, j: {body: ground, point: [1.02, 0]}}
+run: {duration: 1e-4, points: 3}
+"""
+
+
+def test_a_beam_force_of_two_bodies_off_its_place() -> None:
+    """E A/L = 1.26e8 N/m times 10 mm."""
+    (note,) = starts(stiffmbs.check(read_scene(OFF_ITS_PLACE)).messages)
+    assert "'strut' starts with 1.26e+06 N, deflected by 10 mm, with 6.3e+03 J" in note
+
+
+@pytest.mark.parametrize("interpolation", ["pairs", "spectral"])
+def test_beams_that_joints_stretch(interpolation: str) -> None:
+    """All of the 20 mm are in the last interval; sections carry at least E A times the mean strain of 2 %."""
+    (note,) = starts(stiffmbs.check(read_scene(TOO_FAR_APART.replace("INTERPOLATION", interpolation))).messages)
+    found = re.match(r"'rod\.element4' starts with (\S+) N, deflected by (\S+) mm", note)
+    assert found and float(found[1]) > 0.02 * 6e7
+    assert float(found[2]) == pytest.approx(20, rel=0.2)
+    assert "assembly considers joints only, and has stretched it by" in note
+
+
+def test_deflections_of_powers_and_of_other_forces() -> None:
+    """k d^n has the energy F d/(n + 1); force and energy of a law or with a preload do not determine the deflection."""
+    contact = "contact, i: lever.foot, j: {body: ground, point: [0, 0.02]}, radius: 0.03, stiffness: 1e8, exponent: 1.5"
+    (note,) = starts(stiffmbs.check(lever(0.03, contact)).messages)
+    assert f"{1e8 * 0.02**1.5:.3g} N, deflected by 20 mm, with" in note
+    (note,) = starts(stiffmbs.check(lever(0.02, BUSHING + ", preload: [0, 1e5, 0]")).messages)
+    assert "starts with 9e+05 N, with 8e+03 J" in note
+    law = "spring_damper, i: lever, j: ground, spring_law: {table: [[0, 0], [0.1, 1e4], [0.2, 1e6]]}"
+    (note,) = starts(stiffmbs.check(lever(0.0, law)).messages)
+    assert "deflected" not in note
