@@ -192,3 +192,39 @@ def test_deflections_of_powers_and_of_other_forces() -> None:
     law = "spring_damper, i: lever, j: ground, spring_law: {table: [[0, 0], [0.1, 1e4], [0.2, 1e6]]}"
     (note,) = starts(stiffmbs.check(lever(0.0, law)).messages)
     assert "deflected" not in note
+
+
+WELDED = """
+gravity: [0, -9.81]
+bodies:
+  bob: {mass: 1, inertia: 0.1, position: [0, -1]}
+  box: {mass: 1, inertia: 0.1, position: [1.5, -1]}
+joints:
+  weld: {type: fixed, i: box, j: bob}
+  hinge: {type: revolute, i: {body: bob, point: [0, 1]}, j: ground}
+run: {duration: 0.01, points: 3}
+"""
+
+
+@pytest.mark.parametrize("start", ["described", "settled", "equilibrium"])
+def test_bodies_that_assembly_moves_far_are_named_from_any_start(start: str) -> None:
+    """A weld without its points pulls the box by 1.1 m; a start in an equilibrium had no note on it."""
+    found = run(read_scene(WELDED + f"start: {start}"))
+    (note,) = [each for each in found.notes if "assembly changed" in each]
+    assert "box moves by more than 0.25 of the mechanism's size" in note
+    assert "assembly" not in str(run(read_scene(WELDED.replace("[1.5, -1]", "[0, -1]") + f"start: {start}")).notes)
+
+
+def test_bodies_that_assembly_moves_far_are_named_in_steady_motion() -> None:
+    """The sled keeps 3 m/s, at which drive and drag balance."""
+    scene = """
+    bodies: {sled: {mass: 2, inertia: 1, velocity: [3, 0]}, load: {mass: 1, inertia: 1, position: [9, 0], velocity: [3, 0]}}
+    joints: {rail: {type: prismatic, i: sled, j: ground}, weld: {type: fixed, i: load, j: sled}}
+    forces: {drag: {type: force, i: sled, force: ["6 N - 2*vx(sled)", 0]}}
+    start: {velocity: [3, 0], speed: found}
+    run: {duration: 0.01, points: 3}
+    """
+    found = run(read_scene(scene))
+    assert found["sled.vx"] == pytest.approx(3)
+    assert any("assembly changed" in note and "mechanism's size" in note for note in found.notes)
+    assert not any("assembly" in note for note in run(read_scene(scene.replace("[9, 0]", "[0, 0]"))).notes)
