@@ -130,7 +130,7 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
     state.q[:], state.u[:] = found.q, start.u
-    notes = (UNCHECKED_START(), *far_away(dynamics, start, found))
+    notes = (*start.far_notes(), UNCHECKED_START(), *far_away(dynamics, start, found))
     return _moving(dynamics, replace(start, q=found.q, moved=(), notes=notes), "the described velocities", t)
 
 
@@ -153,8 +153,9 @@ def _settled(
 ) -> Settled:
     notes = (*notes, *beyond_its_size(dynamics, start, found))
     resting = replace(
-        start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes
-    )
+        start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(),
+        notes=(*start.far_notes(), *notes),
+    )  # fmt: skip
     return Settled(resting, found.moves, found.imbalance, tuple(free), notes)
 
 

@@ -16,6 +16,7 @@ from ..compile.group import Group
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
+from ..elements.element import Element
 from ..errors import StiffmbsError
 from ..model.model_data import ModelData
 from ..model.scene import Scene
@@ -33,6 +34,8 @@ STIFF = 1e-3
 MOST_MOVES = 100
 """Moves towards the static equilibrium after which it counts as not found: only a note depends on it. Searches that find one take less than half as many
 (``tests/analyses/test_start_forces.py``)."""
+LAWS = ("spring_law", "law_x", "law_y", "law_z", "law_angle", "law_about_x", "law_about_y", "law_about_z")
+"""Fields of elastic elements for forces that are no multiple of the deflection."""
 STANDARD_GRAVITY: Final = 9.80665
 """Gravity by which bodies are weighed in scenes without, or with less, m/s^2."""
 
@@ -63,10 +66,11 @@ class Stretched(NamedTuple):
     elastic: bool
     force: float
     turned: bool = False  # True if the torque is the larger one
+    exponent: float = 1.0  # of the force over the deflection; NaN if the force is no power of it
 
     def deflection(self, energy: float) -> float:
-        """Return the deflection of a linear element with this force and an energy, J, in m."""
-        return 2.0 * energy / self.force
+        """Return the deflection of an element with this force and an energy, J, in m; NaN if they do not determine it."""
+        return (1.0 + self.exponent) * energy / self.force
 
 
 def start_force_notes(
@@ -95,7 +99,8 @@ def start_force_notes(
     added = [each for each in stretched(system, rows.values[0]) if each.name not in (before or ())]
     for worst in _suspects(system, start, added):
         energy = _energy(system, rows, worst.name)
-        if worst.force > OF_WEIGHT * heavy or heavy * worst.deflection(energy) < STIFF * system.size * worst.force:
+        by_weight = heavy / worst.force * 2.0 * energy / worst.force
+        if worst.force > OF_WEIGHT * heavy or by_weight < STIFF * system.size:
             with dynamics.state.unchanged():
                 loaded = DRAWN_LOADED if before is None else ADDED_LOADED
                 yield from _notes(dynamics, start, t, worst, energy, loaded)
@@ -108,14 +113,23 @@ def stretched(system: System, values: np.ndarray) -> list[Stretched]:
     for group in system.groups:
         if group.record.n_equations or not group.kind.element.kind:
             continue
-        for name in group.names:
-            at = [reported.get(f"{name}.{label}", -1) for label in system.of_body.reactions]
+        kind = group.kind.element
+        reacts = getattr(kind, "has_reaction", True)
+        labels = system.of_body.reactions if reacts else getattr(kind, "channels", ())
+        for name, element in zip(group.names, group.elements, strict=True):
+            at = [reported.get(f"{name}.{label}", -1) for label in labels]
             parts = np.array([values[k] if k >= 0 else 0.0 for k in at])
             force, torque = _forces(system, parts)
             if max(force, torque) > 0.0:
                 larger = max(force, torque), torque > force
-                found.append(Stretched(name, group.kind.element.kind, _is_elastic(group), *larger))
+                found.append(Stretched(name, kind.kind, _is_elastic(group), *larger, _exponent(element)))
     return found
+
+
+def _exponent(element: Element) -> float:
+    """Return the exponent of an element's force over its deflection; NaN with a preload or a law."""
+    others = (value for name, value in element if name == "preload" or name in LAWS)
+    return np.nan if any(value is not None and np.any(value) for value in others) else getattr(element, "exponent", 1.0)
 
 
 def _energy(system: System, rows: OutputRows, name: str) -> float:
@@ -123,8 +137,10 @@ def _energy(system: System, rows: OutputRows, name: str) -> float:
 
 
 def _is_elastic(group: Group) -> bool:
-    """Return True for elements with a stiffness, whose forces come from their poses."""
-    return "stiffness" in group.kind.element.__pydantic_fields__ and bool(group.record.patterns.get("potential"))
+    """Return True for elements with a stiffness, given or by a method, whose forces come from their poses."""
+    element = group.kind.element
+    stiff = "stiffness" in element.__pydantic_fields__ or hasattr(element, "stiffness")
+    return stiff and bool(group.record.patterns.get("potential"))
 
 
 def _forces(system: System, parts: np.ndarray) -> tuple[float, float]:
@@ -180,7 +196,8 @@ def _notes(
         if settled
         else f"{worst.force / heavy:.2g} times the weight of all bodies"
     )
-    deflected = f", {_deflected(worst.deflection(energy), worst, system)}, with {energy:.3g} J" if energy > 0 else ""
+    by = _deflected(worst.deflection(energy), worst, system)
+    deflected = f"{', ' * bool(by)}{by}, with {energy:.3g} J" if energy > 0 else ""
     kind = loaded if worst.force > OF_EQUILIBRIUM * at_rest else HELD_LOADED
     opened = _by_assembly(dynamics, start, t, worst, energy)
     force = _written(worst.force, worst, system)
@@ -192,6 +209,8 @@ def _written(force: float, element: Stretched, system: System) -> str:
 
 
 def _deflected(deflection: float, element: Stretched, system: System) -> str:
+    if np.isnan(deflection):
+        return ""
     if element.turned:
         return f"turned by {np.degrees(deflection / system.size):.3g} deg"
     return f"deflected by {1e3 * deflection:.3g} mm"
@@ -217,7 +236,9 @@ def _by_assembly(dynamics: Dynamics, start: InitialValues, t: float, worst: Stre
     system = dynamics.system
     rows = dynamics.report(np.array([t]), system.q[None], start.u[None], False)
     drawn = [each for each in stretched(system, rows.values[0]) if each.name == worst.name] if len(rows.t) else []
-    before = drawn[0].deflection(_energy(system, rows, worst.name)) if drawn else 0.0
-    opened = worst.deflection(energy) - before
-    by = _deflected(opened, worst, system).removeprefix("deflected ").removeprefix("turned ")
-    return f"; assembly considers joints only, and has stretched it {by}" if opened > 0 else ""
+    before = _energy(system, rows, worst.name) if drawn else 0.0
+    if not before < energy:
+        return ""
+    opened = worst.deflection(energy) - (drawn[0].deflection(before) if drawn else 0.0)
+    by = _deflected(opened, worst, system).removeprefix("deflected").removeprefix("turned")
+    return f"; assembly considers joints only, and has stretched it{by}"

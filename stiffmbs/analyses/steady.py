@@ -188,11 +188,12 @@ def _first_found(
     return searches[-1](dynamics, t)
 
 
-def _moving(start: InitialValues, found: Equilibrium, notes: tuple[Note, ...]) -> InitialValues:
+def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) -> InitialValues:
     motion = found.motion
     if motion.upright is not None:
         rate = float(motion.rotation @ motion.upright)
         notes = (*notes, TURNS(rate=rate))
+    notes = (*start.far_notes(), *notes)
     return replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
 
 

@@ -74,6 +74,10 @@ class InitialValues:
             what=what, changes=changes, bodies=bodies, part=part, size=self.size, turn=turn, hint=self.hint
         )
 
+    def far_notes(self) -> tuple[str, ...]:
+        """Return a note on bodies that assembly moved far, which remains if the pose is replaced by an equilibrium."""
+        return (self.position_sentence(CONSISTENCY.most_listed),) if self.moved_far else ()
+
     @property
     def moved_far(self) -> tuple[Move, ...]:
         """Moves too large for a correction of a drawing: an input is wrong, or the scene is not drawn closed."""

@@ -28,21 +28,27 @@ def in_own_axes(
 
 def own_are_principal(system: System) -> bool:
     """Return True in the plane, and if the own axes of all bodies are principal ones."""
+    return bool(np.all(_with_principal_axes(system)))
+
+
+def _with_principal_axes(system: System) -> np.ndarray:
+    """Return True for each body whose own axes are principal ones, as in the plane, shape (n,)."""
     axes = system.principal_axes
-    return not axes.size or np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape))
+    return np.all(axes == OWN_ARE_PRINCIPAL, axis=1) if axes.size else np.ones(len(system.bodies), dtype=bool)
 
 
 def places_of_channels(system: System, q: np.ndarray, u: np.ndarray) -> dict[str, tuple[np.ndarray, int]]:
-    """Return the places of channels that are coordinates q or velocities u of bodies: array and index; none in other axes."""
-    if not own_are_principal(system):
-        return {}
-    levels = (q, system.of_body.positions), (u, system.of_body.velocities)
+    """Return the places of channels that are coordinates q or velocities u of bodies: array and index.
+
+    Rotations and angular velocities in other than principal axes have none.
+    """
+    levels, principal = ((q, system.of_body.positions), (u, system.of_body.velocities)), _with_principal_axes(system)
     return {
         f"{body}.{label}": (values, len(labels) * k + n)
         for values, labels in levels
         for k, body in enumerate(system.bodies)
         for n, label in enumerate(labels)
-        if label not in QUATERNION
+        if label not in QUATERNION and (n < system.of_body.linear or principal[k])
     }
 
 

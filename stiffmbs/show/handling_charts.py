@@ -75,9 +75,9 @@ def _shown(quantity: Quantity, found: Handling, run: Run, display: DisplayUnits)
 
 def _course(runs: Sequence[tuple[int, Handling, Run]], standard: str) -> str:
     """Return the paths of the reference point between the cones, with the path of the driver, in metres."""
-    width = runs[0][1].width
+    width, length = runs[0][1].width, runs[0][1].length
     lanes = tuple(lane.shifted(BEFORE) for lane in STANDARDS[standard](width))
-    path = path_through(lanes, width, BEFORE, BEFORE)
+    path = path_through(lanes, width, BEFORE, BEFORE, length)
     cones = np.array([(x, y) for lane in lanes for x in (lane.start, lane.end) for y in (lane.right, lane.left)])
     bounds = [
         Curve("", np.array([lane.start, lane.end]), np.full(2, y), "cones")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import stiffmbs
@@ -144,3 +146,85 @@ run: {duration: 1e-4}
 )
 def test_examples_start_without_a_note(name: str) -> None:
     assert not starts(stiffmbs.check(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")).messages)
+
+
+OFF_ITS_PLACE = """
+dimensions: 3
+bodies:
+  block: {mass: 3, inertia: [0.01, 0.01, 0.01], position: [0.51, 0, 0]}
+forces:
+  strut: {type: beam, i: block, j: ground, length: 0.5, young: 210 GPa, shear_modulus: 80 GPa, area: 3e-4, torsion: 1e-8, iyy: 5e-9, izz: 5e-9}
+run: {duration: 0.001, points: 3}
+"""
+TOO_FAR_APART = """
+bodies:
+  rod: {type: beam, start: [0, 0], end: [1, 0], elements: 4, interpolation: INTERPOLATION, stiffness: [6e7, 2e7, 2e3], mass_per_length: 2.4, inertia_per_length: 6e-5}
+joints:
+  left: {type: revolute, i: rod.start, j: ground}
+  right: {type: revolute, i: rod.end, j: {body: ground, point: [1.02, 0]}}
+run: {duration: 1e-4, points: 3}
+"""
+
+
+def test_a_beam_force_of_two_bodies_off_its_place() -> None:
+    """E A/L = 1.26e8 N/m times 10 mm."""
+    (note,) = starts(stiffmbs.check(read_scene(OFF_ITS_PLACE)).messages)
+    assert "'strut' starts with 1.26e+06 N, deflected by 10 mm, with 6.3e+03 J" in note
+
+
+@pytest.mark.parametrize("interpolation", ["pairs", "spectral"])
+def test_beams_that_joints_stretch(interpolation: str) -> None:
+    """All of the 20 mm are in the last interval; sections carry at least E A times the mean strain of 2 %."""
+    (note,) = starts(stiffmbs.check(read_scene(TOO_FAR_APART.replace("INTERPOLATION", interpolation))).messages)
+    found = re.match(r"'rod\.element4' starts with (\S+) N, deflected by (\S+) mm", note)
+    assert found and float(found[1]) > 0.02 * 6e7
+    assert float(found[2]) == pytest.approx(20, rel=0.2)
+    assert "assembly considers joints only, and has stretched it by" in note
+
+
+def test_deflections_of_powers_and_of_other_forces() -> None:
+    """k d^n has the energy F d/(n + 1); force and energy of a law or with a preload do not determine the deflection."""
+    contact = "contact, i: lever.foot, j: {body: ground, point: [0, 0.02]}, radius: 0.03, stiffness: 1e8, exponent: 1.5"
+    (note,) = starts(stiffmbs.check(lever(0.03, contact)).messages)
+    assert f"{1e8 * 0.02**1.5:.3g} N, deflected by 20 mm, with" in note
+    (note,) = starts(stiffmbs.check(lever(0.02, BUSHING + ", preload: [0, 1e5, 0]")).messages)
+    assert "starts with 9e+05 N, with 8e+03 J" in note
+    law = "spring_damper, i: lever, j: ground, spring_law: {table: [[0, 0], [0.1, 1e4], [0.2, 1e6]]}"
+    (note,) = starts(stiffmbs.check(lever(0.0, law)).messages)
+    assert "deflected" not in note
+
+
+WELDED = """
+gravity: [0, -9.81]
+bodies:
+  bob: {mass: 1, inertia: 0.1, position: [0, -1]}
+  box: {mass: 1, inertia: 0.1, position: [1.5, -1]}
+joints:
+  weld: {type: fixed, i: box, j: bob}
+  hinge: {type: revolute, i: {body: bob, point: [0, 1]}, j: ground}
+run: {duration: 0.01, points: 3}
+"""
+
+
+@pytest.mark.parametrize("start", ["described", "settled", "equilibrium"])
+def test_bodies_that_assembly_moves_far_are_named_from_any_start(start: str) -> None:
+    """A weld without its points pulls the box by 1.1 m; a start in an equilibrium had no note on it."""
+    found = run(read_scene(WELDED + f"start: {start}"))
+    (note,) = [each for each in found.notes if "assembly changed" in each]
+    assert "box moves by more than 0.25 of the mechanism's size" in note
+    assert "assembly" not in str(run(read_scene(WELDED.replace("[1.5, -1]", "[0, -1]") + f"start: {start}")).notes)
+
+
+def test_bodies_that_assembly_moves_far_are_named_in_steady_motion() -> None:
+    """The sled keeps 3 m/s, at which drive and drag balance."""
+    scene = """
+    bodies: {sled: {mass: 2, inertia: 1, velocity: [3, 0]}, load: {mass: 1, inertia: 1, position: [9, 0], velocity: [3, 0]}}
+    joints: {rail: {type: prismatic, i: sled, j: ground}, weld: {type: fixed, i: load, j: sled}}
+    forces: {drag: {type: force, i: sled, force: ["6 N - 2*vx(sled)", 0]}}
+    start: {velocity: [3, 0], speed: found}
+    run: {duration: 0.01, points: 3}
+    """
+    found = run(read_scene(scene))
+    assert found["sled.vx"] == pytest.approx(3)
+    assert any("assembly changed" in note and "mechanism's size" in note for note in found.notes)
+    assert not any("assembly" in note for note in run(read_scene(scene.replace("[9, 0]", "[0, 0]"))).notes)

@@ -12,6 +12,7 @@ pytest.importorskip("jinja2")
 
 from stiffmbs.model.paths.lanes import STANDARDS
 from stiffmbs.reading.units.display import SI_UNITS, DisplayUnits
+from stiffmbs.show import handling_charts as handling_charts_module
 from stiffmbs.show.curves import curve_chart
 from stiffmbs.show.handling import _cell, _steered, write_handling
 from stiffmbs.show.handling_charts import handling_charts
@@ -47,7 +48,7 @@ def found(angular: bool = True, tests: Any = ("lane_change", "ride"), **metrics:
     )
     parameters = {"first": 0.2, "last": 3.0}
     done = {name: study.Tested(METRICS | metrics, [RUN, RUN], parameters=parameters) for name in tests}
-    return study.Handling("car", car, 0.1, done, 1.8)
+    return study.Handling("car", car, 0.1, done, 1.8, 4.3)
 
 
 @pytest.mark.parametrize("test", TESTS)
@@ -70,6 +71,14 @@ def test_lane_changes_have_cones_and_the_path():
     chart = handling_charts({"": found()}, "lane_change", DEGREES)[0]
     assert chart.count('class="mark"') == 4 * len(STANDARDS[PART_1](1.8))
     assert chart.count('class="curve path"') == 1 and "triangles: cones" in chart
+
+
+def test_the_path_is_that_of_a_vehicle_of_this_length(monkeypatch):
+    """It was that of a vehicle of 4.3 m, up to 0.1 m away."""
+    asked = []
+    monkeypatch.setattr(handling_charts_module, "path_through", lambda *given: asked.append(given) or np.zeros((2, 2)))
+    handling_charts({"": replace(found(), length=6.0)}, "lane_change", SI_UNITS)
+    assert [each[-1] for each in asked] == [6.0]
 
 
 def test_variants_have_colours_of_their_own():

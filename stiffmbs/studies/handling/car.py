@@ -21,8 +21,7 @@ from ...model.scene import Scene
 from ...model.vehicle import Vehicle
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import Content, read_yaml
-from ...reading.marker import GROUND
-from ..suspension.axle import bodies_at
+from ..suspension.axle import centre_of_mass
 
 DRIVER = "handling_driver"
 STEER = "handling_steer"
@@ -101,7 +100,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         corners |= {f"{axle}_left": left, f"{axle}_right": right}
     wheels = {corner: scene.forces[name].i.body for corner, name in corners.items()}
     at = {corner: places[name] for corner, name in corners.items()}
-    middle, centre, own = np.mean([*places.values()], axis=0), _centre_of_mass(scene, body), scene.bodies[body]
+    middle, centre, own = np.mean([*places.values()], axis=0), centre_of_mass(scene, body), scene.bodies[body]
 
     def on_body(place: np.ndarray) -> Point:
         """Return a place in ground axes as a point in the axes of the sprung body."""
@@ -125,18 +124,6 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
 def _point(place: np.ndarray) -> Point:
     x, y, z = map(float, place)
     return x, y, z
-
-
-def _centre_of_mass(scene: Scene, body: str) -> np.ndarray:
-    """Return the centre of mass of the described car, m: of the bodies that joints and forces connect, except by ground."""
-    ends = [set(bodies_at(each)) - {GROUND} for each in (*scene.joints.values(), *scene.forces.values())]
-    found, grown = set[str](), {body}
-    while grown != found:
-        found = grown
-        grown = found.union(*(each for each in ends if each & found))
-    bodies = [each for name, each in scene.bodies.items() if name in found]
-    masses, places = np.array([each.mass for each in bodies]), np.array([each.coordinates()[:3] for each in bodies])
-    return np.asarray(masses @ places / masses.sum())
 
 
 def _check_place(scene: Scene, body: str, places: Mapping[str, np.ndarray]) -> None:

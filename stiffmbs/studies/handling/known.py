@@ -34,7 +34,7 @@ class Known:
     understeer: float
     width: float  # width of the vehicle, m
     ramp: Run  # slow ramp at the speed of the test
-    lag: float = 0.12  # delay from steering to lateral acceleration at 80 km/h, s
+    lag: float = 0.12  # delay from steering to lateral acceleration of the reference point at 80 km/h, s
     length: float = LENGTH  # length of the vehicle, m
 
     @property
@@ -58,11 +58,12 @@ class Known:
         """Return the delay from steering to the lateral acceleration of the driver's point, s, negative at low speeds.
 
         That of the linear bicycle model is c V/(1 + V^2/V_ch^2) - b/V, where b is the distance to the rear axle: a slow
-        car turns about its rear axle, so that points ahead of it move aside at once. c follows from `lag`.
+        car turns about its rear axle, so that points ahead of it move aside at once. c follows from `lag`, with the
+        distance of the reference point.
         """
-        growth, rear = self.understeer / self.per_curvature, self.car.behind(self.car.centre)
-        part = (self.lag + rear / SPEED) * (1 + growth * SPEED**2) / SPEED
-        return part * speed / max(1 + growth * speed**2, LEAST_GROWTH) - rear / speed
+        growth = self.understeer / self.per_curvature
+        part = (self.lag + self.car.behind(self.car.measured) / SPEED) * (1 + growth * SPEED**2) / SPEED
+        return part * speed / max(1 + growth * speed**2, LEAST_GROWTH) - self.car.behind(self.car.centre) / speed
 
     def steer_for(self, acceleration: float) -> float:
         """Return the steering for a steady lateral acceleration, by interpolation in the ramp from straight ahead on.

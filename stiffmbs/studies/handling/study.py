@@ -59,6 +59,8 @@ class Handling:
     tests : dict of str to Tested
     width : float
         Width of the vehicle, m, for which courses have their cones.
+    length : float
+        Length of the vehicle, m, whose corners the driver's path keeps between them.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Handling:
     ratio: float
     tests: dict[str, Tested]
     width: float
+    length: float
 
     def __getitem__(self, test: str) -> dict[str, float]:
         """Return the values of the metrics of a test."""
@@ -149,7 +152,8 @@ def handling(
         count = workers or os.cpu_count() or 1
         pool = stack.enter_context(process_pool(count)) if count > 1 else None
         known = _preliminary(scene, car, width or car.track + WIDER, length or (1 + OVERHANGS) * car.wheelbase)
-        return Handling(scene.name, car, known.ratio, _solved(scene, car, known, changed, pool), known.width)
+        found = _solved(scene, car, known, changed, pool)
+        return Handling(scene.name, car, known.ratio, found, known.width, known.length)
 
 
 def _preliminary(scene: Scene, car: Car, width: float, length: float) -> Known:

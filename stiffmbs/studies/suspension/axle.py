@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
 
@@ -22,14 +22,26 @@ from ...reading.marker import GROUND, MarkerReference
 
 def bodies_of(scene: ModelData, body: str, carriers: Sequence[str]) -> set[str]:
     """Return the bodies connected to the carriers of the wheels other than through the clamped body, and that body."""
-    elements = (*scene.joints.values(), *scene.forces.values())
-    ends = [set(bodies_at(each)) - {body, GROUND} for each in elements if not depends_on_more(each)]
-    found: set[str] = set()
-    grown = set(carriers)
-    while grown != found:
-        found = grown
-        grown = found.union(*(each for each in ends if each & found))
-    return found | ({body} - {GROUND})
+    elements = (each for each in (*scene.joints.values(), *scene.forces.values()) if not depends_on_more(each))
+    return grown(carriers, elements, {body, GROUND}) | ({body} - {GROUND})
+
+
+def centre_of_mass(scene: ModelData, body: str) -> np.ndarray:
+    """Return the centre of mass of a described vehicle, m: of the bodies that joints and forces connect, except by ground."""
+    found = grown([body], (*scene.joints.values(), *scene.forces.values()), {GROUND})
+    bodies = [each for name, each in scene.bodies.items() if name in found]
+    masses, places = np.array([each.mass for each in bodies]), np.array([each.coordinates()[:3] for each in bodies])
+    return np.asarray(masses @ places / masses.sum())
+
+
+def grown(bodies: Sequence[str], elements: Iterable[Element], without: set[str]) -> set[str]:
+    """Return bodies with all those that elements connect to them, except through the bodies `without`."""
+    ends = [set(bodies_at(each)) - without for each in elements]
+    found, larger = set[str](), set(bodies)
+    while larger != found:
+        found = larger
+        larger = found.union(*(each for each in ends if each & found))
+    return found
 
 
 def bodies_at(element: Element) -> Iterator[str]:

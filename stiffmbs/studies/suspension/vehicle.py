@@ -11,7 +11,7 @@ from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND
-from .axle import SAME_AXLE, Axle
+from .axle import SAME_AXLE, Axle, centre_of_mass
 
 BRAKE_SHARES = {True: 0.6, False: 0.4}
 """Assumed share of the braking force at a front and at a rear axle; typical of passenger cars."""
@@ -111,9 +111,7 @@ def _contacts(model: ModelData) -> list[float]:
 
 
 def _height(model: ModelData, axle: Axle) -> float | None:
-    """Return the height of the centre of mass of all bodies above the contacts, or None if the body is ground."""
+    """Return the height of the vehicle's centre of mass above the contacts, or None if the clamped body is ground."""
     if axle.body == GROUND:
         return None
-    masses = np.array([body.mass for body in model.bodies.values()])
-    heights = [model.point(Marker(body=name, point=body.center_of_mass))[2] for name, body in model.bodies.items()]
-    return float(masses @ heights / masses.sum() - np.mean([wheel.contact[2] for wheel in axle.wheels]))
+    return float(centre_of_mass(model, axle.body)[2] - np.mean([wheel.contact[2] for wheel in axle.wheels]))

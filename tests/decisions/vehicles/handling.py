@@ -42,7 +42,7 @@ def coasting():
         return found.driver["releases"], found.duration
 
 
-AT_THE_MIDDLE = Record(centre=None, behind=lambda _: 0.0)
+AT_THE_MIDDLE = Record(centre=None, measured=None, behind=lambda _: 0.0)
 
 
 def lag_of_an_oversteering_car():

@@ -144,21 +144,25 @@ def test_a_search_without_a_result_says_so(limit, said):
         searched(test, limit)
 
 
+@pytest.mark.parametrize("ahead", [0.0, 1.2, -0.7])
 @pytest.mark.parametrize("speed", [5.0, 8.0, 14.0, 22.0, 30.0])
-def test_the_delay_at_a_speed_is_that_of_the_bicycle_model(speed):
-    """Slope of the phase of the lateral acceleration at zero frequency, of a linear car."""
+def test_the_delay_at_a_speed_is_that_of_the_bicycle_model(speed, ahead):
+    """Slope of the phase of the lateral acceleration at zero frequency, of a linear car.
+
+    The ramp is measured at the reference point, and the driver's point is the centre of mass.
+    """
     mass, inertia, a, b, front, rear = 1500.0, 2500.0, 1.2, 1.5, 9e4, 1.2e5
 
-    def delay(v, w=1e-3):
+    def delay(v, ahead=0.0, w=1e-3):
         lever = a * front - b * rear
         matrix = np.array([
             [-(front + rear) / (mass * v), -v - lever / (mass * v)],
             [-lever / (inertia * v), -(a**2 * front + b**2 * rear) / (inertia * v)],
         ])  # fmt: skip
         x = np.linalg.solve(1j * w * np.eye(2) - matrix, [front / mass, a * front / inertia])
-        return -np.angle(1j * w * x[0] + v * x[1]) / w
+        return -np.angle(1j * w * (x[0] + ahead * x[1]) + v * x[1]) / w
 
     growth = mass / (a + b) ** 2 * (b / front - a / rear)
-    car = SimpleNamespace(centre=None, behind=lambda _: b)
-    known = Known(car, a + b, growth * (a + b), 1.8, {}, delay(80 / 3.6))
+    car = SimpleNamespace(centre=0.0, measured=ahead, behind=lambda place: b + place)
+    known = Known(car, a + b, growth * (a + b), 1.8, {}, delay(80 / 3.6, ahead))
     assert known.lag_at(speed) == pytest.approx(delay(speed), abs=1e-5)

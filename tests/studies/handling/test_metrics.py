@@ -13,7 +13,7 @@ from stiffmbs.studies.handling.parameters import BrakingInATurn, ConstantRadius,
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
-STANDING = SimpleNamespace(centre=(0.0, 0.0, 0.5), behind=lambda place: TO_REAR)
+STANDING = SimpleNamespace(centre=(0.0, 0.0, 0.5), measured=(0.0, 0.0, 0.5), behind=lambda place: TO_REAR)
 """Car for what depends on the place of its centre of mass alone."""
 GRADIENT = MASS / WHEELBASE * (TO_REAR / FRONT - TO_FRONT / REAR)
 

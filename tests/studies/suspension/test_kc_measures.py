@@ -10,6 +10,8 @@ import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
 from stiffmbs.show.suspension import kc_text
+from stiffmbs.studies.suspension.axle import axle_of
+from stiffmbs.studies.suspension.vehicle import VehicleOptions, vehicle_of
 
 NONE = dict.fromkeys(
     ("bump", "roll", "steer", "lateral", "lateral_parallel", "brake", "traction", "aligning", "aligning_parallel"), 0
@@ -54,6 +56,23 @@ def test_anti_lift_and_anti_squat_of_a_trailing_arm():
     found = measures(scene(parts, bodies=chassis), "rear", vehicle=inboard)
     assert found["left.anti_lift"] == pytest.approx(100 * 0.4 * -0.02 / 0.42 * 5)
     assert found["left.anti_squat"] == pytest.approx(100 * 0.28 / 0.42 * 5)
+
+
+def test_bodies_that_are_not_connected_do_not_change_the_centre_of_mass():
+    """A heavy barrier on the ground, high above the wheels, is no part of the vehicle; ballast on its body is."""
+    chassis = {"mass": 1000, "inertia": [300, 1000, 1000], "position": [1, 0, 0.5]}
+    other = {"mass": 5000, "inertia": [1, 1, 1], "position": [50, 30, 4]}
+    entry = {**corner("trailing_arm", **STRAIGHT), "on": "chassis", "position": [-1, 0, -0.5]}
+    parts = {"rear.left": entry, "rear.right": {**entry, "mirror": "y"}}
+
+    def height(bodies, joints):
+        read = scene(parts, bodies={"chassis": chassis, **bodies}, joints=joints)
+        return vehicle_of(read, axle_of(read, "rear"), VehicleOptions()).height
+
+    alone, at = height({}, {}), {"point": [49, 30, 3.5]}
+    weld = {"i": "other", "j": {"body": "chassis", **at}, "type": "fixed"}
+    assert height({"other": other}, {"base": {**weld, "j": {"body": "ground", "point": [50, 30, 4]}}}) == alone
+    assert height({"other": other}, {"base": weld}) > alone + 1
 
 
 @pytest.mark.long
