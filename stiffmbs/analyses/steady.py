@@ -48,6 +48,11 @@ TURNS = NoteKind(
     "the forces do not balance on a straight line: the steady motion turns at {rate:.3g} rad/s",
     severity=Severity.REMARK,
 )
+OTHER_SPEED = NoteKind(
+    "steady-speed",
+    "the forces determine a steady motion of {speed:.3g} m/s; the velocity of start is {given:.3g} m/s",
+    "correct the forces, such as traction and drag, begin with a velocity nearer to the motion, or use speed: given",
+)
 ROTATION_LEFT_OUT = NoteKind(
     "rotation-left-out",
     "the run starts in the equilibrium at rest, without the centrifugal forces of its rotation",
@@ -68,7 +73,11 @@ def settled_in_motion(
 
     found = _found(model, dynamics, start, t, described)
     values = _eigenvalues(dynamics, t, found)
-    notes = (_stability(values, dynamics.system.n_u), *beyond_its_size(dynamics, start, found))
+    notes = (
+        _stability(values, dynamics.system.n_u),
+        *beyond_its_size(dynamics, start, found),
+        *_speed(described, found.motion),
+    )
     eigenvalues = () if values is None else tuple(values.tolist())
     return Settled(_moving(start, found, notes), found.moves, found.imbalance, (), notes, eigenvalues)
 
@@ -78,7 +87,8 @@ def start_in_motion(
 ) -> InitialValues:
     """Return initial values in steady motion, unchecked for stability; arguments as for `settled_in_motion`."""
     found = _found(model, dynamics, start, t, described)
-    return _moving(start, found, (UNCHECKED_START(), *far_away(dynamics, start, found)))
+    notes = (UNCHECKED_START(), *far_away(dynamics, start, found), *_speed(described, found.motion))
+    return _moving(start, found, notes)
 
 
 def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues) -> tuple[Note, ...]:
@@ -186,6 +196,13 @@ def _first_found(
             return search(dynamics, t)
     dynamics.state.q[:] = start.q
     return searches[-1](dynamics, t)
+
+
+def _speed(described: Described, found: SteadyMotion) -> tuple[Note, ...]:
+    """Return a note if the forces determine a speed that is far from that of the description, from which the search begins."""
+    speed, given = (float(np.linalg.norm(velocity)) for velocity in (found.velocity, described.velocity))
+    differs = described.speed == "found" and abs(speed - given) > EQUILIBRIA.other_speed * given
+    return (OTHER_SPEED(speed=speed, given=given),) if differs else ()
 
 
 def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) -> InitialValues:

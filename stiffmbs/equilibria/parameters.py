@@ -52,6 +52,8 @@ class EquilibriumParameters:
     """Rate of a state relative to itself, 1/s, that scales the allowed residual of its equation."""
     passed_on: float = 1e-8
     """Largest allowed rounding transmitted by joints from other bodies, relative to the largest force."""
+    other_speed: float = 0.5
+    """Difference of the speed that forces determine from that of the description, relative to it, above which a note appears."""
     most_nearest_moves: int = 100
     """Largest number of moves to the nearest equilibrium."""
     most_halvings: int = 12

@@ -50,7 +50,8 @@ class _Curves:
         part = (t - self.t[k]) / (self.t[k + 1] - self.t[k])
         _, z = self.curve.at(part[:, None], k)
         errors = self.errors[k] + part[:, None] * (self.errors[k + 1] - self.errors[k])
-        q, u = displaced(self.dynamics.system, *np.hsplit(z, [self.dynamics.system.n_q]), 0.0 * errors)
+        q, u = np.hsplit(z, [self.dynamics.system.n_q])
+        q, u = displaced(self.dynamics.system, q, u, 0.0 * errors)
         if self.dynamics.system.n_c:
             at = evaluated(self.dynamics, t, q, u)
             q, u = at.q, at.u

@@ -265,10 +265,23 @@ def contents(model: Any) -> str:
     return f"'{model.name}': {', '.join(parts)}"
 
 
+def _check_deformable(where: str, element: str, body: str, bodies: Mapping[str, Any]) -> None:
+    """Refuse an element on a frame or modal coordinates of a flexible body, other than its own: a force there would not deform it."""
+    name = body.rpartition(".")[0]
+    if not element.removeprefix("joints.").startswith(f"{name}."):
+        own = [other for other in bodies if other.startswith(f"{name}.") and bodies[other].rigid]
+        listed = ", ".join(own) or "it has none"
+        raise ValueError(
+            f"{where}: found '{body}', where a force would not deform the flexible body '{name}', expected one of its interfaces ({listed})"
+        )
+
+
 def check_element(where: str, element: Element, scope: Scope) -> None:
     """Refuse an element with an unknown body, marker, joint or coordinate, or between a body and itself."""
     for field, marker in element.markers():
         check_marker(f"{where}.{field}", marker, scope.bodies, scope.on_ground)
+        if marker.body != GROUND and not scope.bodies[marker.body].rigid:
+            _check_deformable(f"{where}.{field}", where, marker.body, scope.bodies)
     joints = scope.joints
     for field, joint in element.parts(JointName):
         owner = joint.rpartition(".")[0]

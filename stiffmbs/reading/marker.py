@@ -116,8 +116,9 @@ def check_marker(
     if marker.body != GROUND and marker.body not in bodies:
         of_parts = any(name.startswith(f"{marker.body}.") for name in bodies)  # such as the nodes of a beam
         name = marker.label if of_parts else marker.body
+        known = {each: body for each, body in bodies.items() if body.rigid}  # no frames and modes of flexible bodies
         raise ValueError(
-            f"{where}: found the unknown body '{name}'{did_you_mean(name, bodies)}, expected {listed(bodies)}"
+            f"{where}: found the unknown body '{name}'{did_you_mean(name, known)}, expected {listed(known)}"
         )
     own = on_ground if marker.body == GROUND else bodies[marker.body].markers
     if marker.marker is not None and marker.marker not in own:

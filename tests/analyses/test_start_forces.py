@@ -228,3 +228,18 @@ def test_bodies_that_assembly_moves_far_are_named_in_steady_motion() -> None:
     assert found["sled.vx"] == pytest.approx(3)
     assert any("assembly changed" in note and "mechanism's size" in note for note in found.notes)
     assert not any("assembly" in note for note in run(read_scene(scene.replace("[9, 0]", "[0, 0]"))).notes)
+
+
+@pytest.mark.parametrize("given", [3.0, 2.5, 8.0])
+def test_a_speed_that_forces_determine_far_from_the_described_one_has_a_note(given: float) -> None:
+    scene = f"""
+    bodies: {{sled: {{mass: 2, inertia: 1, velocity: [{given}, 0]}}}}
+    joints: {{rail: {{type: prismatic, i: sled, j: ground}}}}
+    forces: {{drag: {{type: force, i: sled, force: ["6 N - 2*vx(sled)", 0]}}}}
+    start: {{velocity: [{given}, 0], speed: found}}
+    run: {{duration: 0.01, points: 3}}
+    """
+    found = run(read_scene(scene))
+    assert found["sled.vx"] == pytest.approx(3)
+    noted = any("a steady motion of 3 m/s; the velocity of start is 8 m/s" in note for note in found.notes)
+    assert noted == (given == 8.0)

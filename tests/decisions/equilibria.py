@@ -20,6 +20,12 @@ from tests.decisions.common import Reached, Record, nothing
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 
+def noted_speed(speed):
+    """Return True if a note states a speed that forces determine, for a description of 1 m/s."""
+    described, motion = Record(speed="found", velocity=(1.0, 0.0)), Record(velocity=np.array([0.0, speed]))
+    return bool(steady._speed(described, motion))
+
+
 class Balanced(Record):
     """Balance of two forces; `left` is their residual."""
 
@@ -179,6 +185,7 @@ def worst_solution():
 DECISIONS = {
     "equilibria.most_moves": lambda: len(steps(1.0)),
     "equilibria.most_straight_moves": straight_moves,
+    "equilibria.other_speed": lambda: count_while(lambda part: not noted_speed(1.0 + 0.01 * part), DOUBLES),
     "equilibria.translation": lambda: longest_move([1.0, 0.0]),
     "equilibria.rotation": lambda: longest_move([0.0, 1.0]),
     "equilibria.least_shift": lambda: min(steps(0.5)),
@@ -204,7 +211,7 @@ DECISIONS = {
     "equilibria.no_effect": worst_solution,
 }
 EXPECTED = {
-    "equilibria.most_moves": 2000, "equilibria.most_straight_moves": 200, "equilibria.translation": 32,
+    "equilibria.most_moves": 2000, "equilibria.other_speed": 23, "equilibria.most_straight_moves": 200, "equilibria.translation": 32,
     "equilibria.rotation": 36, "equilibria.least_shift": 0.001, "equilibria.largest_shift": 363,
     "equilibria.shift_falls": 0.1, "equilibria.shift_rises": 4, "equilibria.wanted_ratio": 0.5477225575,
     "equilibria.last_move": 23, "equilibria.diverging_move": 43, "equilibria.most_corrections": 8,

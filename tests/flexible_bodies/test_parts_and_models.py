@@ -163,3 +163,14 @@ def test_mistakes_in_parts_name_the_part(folder):
         read_scene(HEAD + wing.replace("modes: 4", "modes: -4") + TIMES)
     with pytest.raises(InputError, match=r"parts\.wing\.bodies: found a flexible body, expected dimensions: 3"):
         read_scene("parts: {wing: {bodies: {arm: {type: flexible}}}}\nuse: {left: {part: wing}}\n" + TIMES)
+
+
+@pytest.mark.parametrize("body", ["arm.frame", "arm.modes1", "{body: arm.frame, point: [0.1, 0, 0]}"])
+def test_forces_on_the_frame_and_the_modes_are_refused(folder, body):
+    """They would move the whole body, or its modal coordinates, without regard to its shapes."""
+    text = REST.replace("MOUNT", "ground").replace("\n    ", "\n").replace("i: weight", f"i: {body}")
+    (folder / "frame.yaml").write_text(HEAD + text + TIMES)
+    with pytest.raises(
+        InputError, match=r"forces\.spring\.i: found 'arm\.(frame|modes1)', .*interfaces \(arm\.root, arm\.tip\)"
+    ):
+        load_scene(folder / "frame.yaml")
