@@ -182,9 +182,8 @@ class FlexibleMotion:
     def stress(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the stresses xx, yy, zz, xy, yz, zx, N/m^2, in the axes of the mesh, shape (times, points, 6).
 
-        They are the mean of the elements at a point. The points are those of `stress_nodes`. With geometric stiffening, strains are
-        those of second order, which a slender body has at small stresses. `at`: output times by number. Raises InputError if the
-        body is described by matrices.
+        They are the mean of the elements at a point, and contain strains of second order with geometric stiffening. The points are
+        those of `stress_nodes`. `at`: output times by number. Raises InputError if the body is described by matrices.
         """
         modal = self.modal[at]
         found = np.tensordot(modal, self._stress_modes, 1)

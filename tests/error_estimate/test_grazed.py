@@ -137,3 +137,25 @@ def test_a_driven_body_that_touches_a_stop(solver, rtol):
     error = abs(found["b.x"][-1] - pushed)
     assert 0.3 * error < found.errors["b.x"].over_time < 3.0 * error
     assert error < {1e-4: 0.5, 1.4e-5: 0.05, 1e-6: 1e-3}[rtol] * pushed
+
+
+@pytest.mark.parametrize("rtol", [7.5e-4, 7.5e-5, 7.5e-7, 7.5e-8])
+def test_stages_of_explicit_steps_that_end_at_a_stop_are_before_it(rtol):
+    """Stages are far less accurate than the ends of long steps: a soft stop pushed before it was touched, at any tolerance."""
+    w, k, end, c = np.sqrt(9.814945), 12.8855, 12.0, 0.99994533
+    scene = """
+        gravity: [0, 0]
+        bodies: {q: {mass: 1, inertia: 1, position: [1, 0]}, b: {mass: 1, inertia: 1, position: [0, 1]}}
+        forces:
+          spring: {type: force, i: q, force: ["-9.814945*q.x", 0]}
+          push: {type: force, i: b, force: ["12.8855*max(q.x - 0.99994533, 0)", 0]}
+        run: {duration: 12, points: 11}
+        """
+    found = stiffmbs.run(stiffmbs.read_scene(scene), solver="projected", scheme="dop853", rtol=rtol, errors=True)
+    reach = np.arccos(c) / w
+    later = k * (reach * np.sin(w * reach) / w + (np.cos(w * reach) - 1.0) / w**2 - 0.5 * c * reach**2)
+    times = 2.0 * np.pi * np.arange(1, int(end * w / (2.0 * np.pi)) + 1) / w
+    impulse = 2.0 * k * (np.sin(w * reach) / w - c * reach)
+    error = abs(found["b.x"][-1] - (impulse * (0.5 * end + (end - times).sum()) - later))
+    assert error < rtol
+    assert 0.5 * error < found.errors["b.x"].over_time < 2.0 * error

@@ -1,6 +1,7 @@
 """Event location of explicit integrators: steps end at sign changes of event functions."""
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import (
@@ -16,13 +17,13 @@ from stiffmbs.solve.events.native.bounds import (
 from stiffmbs.solve.events.native.layouts import EVENT, NO_EVENT, PASSED_INTERVAL, RETRIED
 from stiffmbs.solve.events.native.locate import go_on, located, note_rates
 from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
-from stiffmbs.solve.events.native.values import switches, take_reactions
+from stiffmbs.solve.events.native.values import switches, take_reactions, unwrapped
 from stiffmbs.solve.events.native.within_step import keep_row
 from stiffmbs.solve.explicit.native.attempt import retaken
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare
 from stiffmbs.solve.explicit.native.parameters import CONTROL, LOCATION
-from stiffmbs.solve.explicit.native.stages import load_state, scheme_view
+from stiffmbs.solve.explicit.native.stages import load_state, scheme_view, weighted
 from stiffmbs.solve.explicit.native.start import go_straight
 
 
@@ -106,6 +107,30 @@ def _signs_change(w):
 
 
 @compiled
+def _are_stages_beyond(x, c, s, w):
+    """Return True if stages of a step that ends at an event are beyond it, by more than the tolerance of the function's change.
+
+    They have forces of the other side, which the error estimate hardly sees: the stages are far less accurate than the end.
+    """
+    for k in range(w.n_event_functions):
+        w.m[k] = abs(w.value_before[k])
+        w.m2[k] = 0.0
+    for row in range(1, c.stages):
+        weighted(x, c, x.y_stage, row, x.span)
+        load_state(s, x.y_stage)
+        values = unwrapped(w, evaluate(s, SWITCH, x.t_before + c.c[row] * x.span))
+        for k in range(w.n_event_functions):
+            if values[k] * w.value_before[k] < 0.0:
+                w.m2[k] = max(w.m2[k], abs(values[k]))
+            else:
+                w.m[k] = max(w.m[k], abs(values[k]))
+    beyond = 0
+    for k in range(w.n_event_functions):
+        beyond += w.m2[k] > x.rtol * w.m[k]
+    return beyond > 0
+
+
+@compiled
 def _way_past(x, w, s, least, most):
     """Return the time after which a sign change exceeds rounding, `least` or more: slow motions take longer."""
     ahead = least
@@ -144,6 +169,8 @@ def ended_at_event(x, c, s, m):
         status = retaken(x, c, s, m, max(place * h - beyond, 0.5 * place * h))
     if status < 0:
         return status
+    if _signs_change(w) and 0.5 * x.span >= x.shortest and _are_stages_beyond(x, c, s, w):
+        return _gone_back(x, c, 0.5 * x.span)
     error = x.repeats * trusted_error(x, c, x.span) if status == 0 else CONTROL.untrusted
     if not error <= 1.0:
         shorter = x.span * max(CONTROL.least_factor, CONTROL.safety * error**-c.exponent)
