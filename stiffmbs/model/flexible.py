@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypeVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from ..elements.body import LineBody, is_flexible
 from ..elements.element import Joint
@@ -22,7 +22,7 @@ from ..elements.spatial.joints.point_on_plane import PointOnPlane
 from ..elements.spatial.marker import ORIGIN, Marker, Point
 from ..elements.spatial.orientation import IDENTITY, Orientation, matrix
 from ..errors import InputError, prefixed
-from ..flexible_bodies.description import FlexibleBody
+from ..flexible_bodies.description import FlexibleBody, InterfaceOfNodes
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
 from ..reading.fields import Described, Measured, located
@@ -81,6 +81,15 @@ class SceneFlexibleBody(FlexibleBody, LineBody):
     stress_colors: bool = Field(
         False, description="color by von Mises stress in pictures, films and pages; of meshes only", repr=False
     )
+
+    @field_validator("interfaces")
+    @classmethod
+    def _other_names(cls, found: dict[str, InterfaceOfNodes]) -> dict[str, InterfaceOfNodes]:
+        """Refuse interfaces with the name of the frame or of modal coordinates, whose bodies they would replace."""
+        taken = [name for name in found if name == FRAME or (name.startswith(MODES) and name[len(MODES) :].isdigit())]
+        if taken:
+            raise ValueError(f"found '{taken[0]}', the name of a part of each flexible body, expected another")
+        return found
 
     def add_to(self, model: Any, name: str) -> FlexibleHandle:
         """Add the frame, modal coordinates and interfaces to a model built in Python, and return handles of the interfaces."""

@@ -55,7 +55,14 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         """
         if isinstance(part, LineBody):
             self._check_name(name)
-            return part.add_to(self, name)
+            before = [(section, dict(section)) for section in self._sections()]
+            try:
+                return part.add_to(self, name)
+            except InputError:
+                for section, kept in before:
+                    section.clear()
+                    section.update(kept)
+                raise
         section = self._section_for(name, part)
         self._check_name(name)
         self._check(name, part)

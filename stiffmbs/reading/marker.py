@@ -114,7 +114,7 @@ def check_marker(
 ) -> None:
     """Refuse a marker on an unknown body, or a marker name that its body does not have."""
     if marker.body != GROUND and marker.body not in bodies:
-        of_parts = any(name.startswith(f"{marker.body}.") for name in bodies)  # such as the nodes of a beam
+        of_parts = any(f".{marker.body}." in f".{name}" for name in bodies)  # such as the nodes of a beam
         name = marker.label if of_parts else marker.body
         known = {each: body for each, body in bodies.items() if body.rigid}  # no frames and modes of flexible bodies
         raise ValueError(

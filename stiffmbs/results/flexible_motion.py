@@ -142,8 +142,12 @@ class FlexibleMotion:
         return self._frame[at][:, None, :3] + turned.reshape(own.shape)
 
     def strain_energy(self) -> np.ndarray:
-        """Return the strain energy of each mode, J, shape (times, modes)."""
-        return (2 * np.pi * self.reduced.frequencies * self.modal) ** 2 / 2  # type: ignore[no-any-return]
+        """Return the strain energy of each mode, J, shape (times, modes), with geometric stiffening that of strains of second order."""
+        strained, terms = self.modal, self.reduced.second_order
+        if self._source[0].is_stiffened:
+            stretches = np.einsum("tk,ikl,tl->ti", strained, terms.stretch, strained, optimize=True) / 2
+            strained = strained + stretches @ terms.static.T
+        return (2 * np.pi * self.reduced.frequencies * strained) ** 2 / 2  # type: ignore[no-any-return]
 
     def unrepresented(self) -> tuple[float, float]:
         """Return the share of the strain energy by inertia and weight that the modes cannot represent, and its time, s.
@@ -222,12 +226,17 @@ class FlexibleMotion:
                     found[name] = Peak(value, node, (x, y, z), float(self.t[first + row]))
         return found
 
-    def error_of_stress(self, node: int) -> float | None:
-        """Return the error bar of the von Mises stress at a node, N/m^2, if the run was verified."""
+    def error_of_stress(self, peak: Peak) -> float | None:
+        """Return the error bar of the von Mises stress at the node and time of a peak, N/m^2, if the run was verified."""
         if self._modal_errors is None:
             return None
-        of_modes = von_mises(self._stress_modes[:, self.stress_nodes == node])
-        return float((self._modal_errors @ of_modes).max())
+        at = self.stress_nodes == peak.node
+        rates = self._stress_modes[:, at]
+        if self._source[0].is_stiffened:
+            modal = self.modal[np.abs(self.t - peak.time).argmin()]
+            differences = (self._further_stress(modal + np.outer([1, -1], unit))[:, at] for unit in np.eye(len(modal)))
+            rates = rates + [(more - less) / 2 for more, less in differences]
+        return float((self._modal_errors @ von_mises(rates)).max())
 
     def write(self, path: Path, at: slice | np.ndarray = slice(None), scale: float = 1.0) -> None:
         """Write the moving and deformed mesh over time for ParaView, with displacement and stresses.

@@ -106,7 +106,7 @@ def flexible_motion_as_dict(scene: str, motion: FlexibleMotion, nodes: Sequence[
         "body": motion.name,
         "stress": {
             name: {"value": peak.value, "node": peak.node, "point": list(peak.point), "time": peak.time}
-            | ({} if (bar := motion.error_of_stress(peak.node)) is None else {"error": bar})
+            | ({} if (bar := motion.error_of_stress(peak)) is None else {"error": bar})
             for name, peak in peaks.items()
         },
         "strain_energy": {"largest": float(energy.sum(axis=1).max()), "by_mode": energy.max(axis=0).tolist()},

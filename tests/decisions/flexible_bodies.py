@@ -165,7 +165,7 @@ def most_warped_quadrilateral():
 
 
 def parts_of_a_shell():
-    one = shell.Shell(*(np.zeros((10**4, *shape)) for shape in ((3,), (3,), (3, 3), (), (), ())))
+    one = shell.Shell(*(np.zeros((10**4, *shape)) for shape in ((3,), (3,), (3, 3), (), (), (), ())))
     parts = []
     pairs = Record(zeros=lambda _: reached, add=lambda *_: parts.append(1), columns=0, starts=0)
     with (

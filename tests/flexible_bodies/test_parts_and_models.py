@@ -96,13 +96,23 @@ def test_a_part_moves_as_the_plain_scene_or_its_mirror_image(folder, plain, mirr
     np.testing.assert_allclose(of_part, of_plain, atol=1e-5 * of_plain.max())
 
 
+def arm_like(**fields):
+    """Return a body for a model built in Python."""
+    described = {
+        "mesh": "arm.vtu",
+        "units": {"length": 1},
+        "material": {"E": 7e10, "nu": 0.3, "density": 2700},
+        "thickness": 0.02,
+    }
+    return BodyOfModel(**described, **fields)
+
+
 def test_a_model_built_in_python_moves_as_the_scene(folder, plain, monkeypatch):
     monkeypatch.chdir(folder)
     model = Model("wing")
     plane = {"point": [0, 0, 0], "normal": [1, 0, 0]}
-    arm = model.add("arm", BodyOfModel(
-        mesh="arm.vtu", units={"length": 1}, material={"E": 7e10, "nu": 0.3, "density": 2700}, thickness=0.02, modes=4, damping=0.01,
-        position=(0, 0.2, 0), orientation={"z": [0, 0.1, 1]}, omega=(0, 0, 0.5),
+    arm = model.add("arm", arm_like(
+        modes=4, damping=0.01, position=(0, 0.2, 0), orientation={"z": [0, 0.1, 1]}, omega=(0, 0, 0.5),
         interfaces={"root": {"plane": plane}, "tip": {"plane": plane | {"point": [1, 0, 0]}}},
     ))  # fmt: skip
     assert repr(arm) == "<FlexibleHandle arm: root, tip>"
@@ -116,6 +126,14 @@ def test_a_model_built_in_python_moves_as_the_scene(folder, plain, monkeypatch):
     np.testing.assert_allclose(points(found, "arm.tip"), points(plain[1], "arm.tip"), atol=1e-9)
     with pytest.raises(AttributeError, match="arm: found no interface 'tips'"):
         _ = arm.tips
+    known = list(model.bodies), list(model.joints)
+    model.add("other.end", Body(mass=1, inertia=(1, 1, 1)))
+    with pytest.raises(
+        InputError, match=r"other\.end: found a name that is taken"
+    ):  # no other part of the body remains
+        model.add("other", arm_like(interfaces={"end": {"plane": plane}}))
+    model.remove("other.end")
+    assert (list(model.bodies), list(model.joints)) == known
     with pytest.raises(InputError, match=r"other: none\.vtu: "):
         model.add("other", BodyOfModel(mesh="none.vtu", units={"length": 1}, material={"E": 1, "nu": 0, "density": 1}))
 
@@ -161,6 +179,17 @@ def test_mistakes_in_parts_name_the_part(folder):
         load_scene(folder / "wrong.yaml")
     with pytest.raises(InputError, match=r"parts\.wing\.bodies\.arm\.modes"):
         read_scene(HEAD + wing.replace("modes: 4", "modes: -4") + TIMES)
+    thick = wing.replace("thickness: 20 mm", "thickness: h").replace("wing:", "wing:\n    parameters: {h: 20 mm}")
+    for part, message in (
+        (
+            thick.replace("{left: {part: wing}}", "{left: {part: wing}, right: {part: wing, parameters: {h: -1 mm}}}"),
+            r"thickness: found h, .* \(in right\)",
+        ),
+        (wing.replace("arm.tip", "arm.tap"), r"found the unknown body 'arm\.tap', expected left\.arm\.root"),
+    ):
+        (folder / "wrong.yaml").write_text(HEAD + part + TIMES)
+        with pytest.raises(InputError, match=message):
+            load_scene(folder / "wrong.yaml")
     with pytest.raises(InputError, match=r"parts\.wing\.bodies: found a flexible body, expected dimensions: 3"):
         read_scene("parts: {wing: {bodies: {arm: {type: flexible}}}}\nuse: {left: {part: wing}}\n" + TIMES)
 
@@ -174,3 +203,17 @@ def test_forces_on_the_frame_and_the_modes_are_refused(folder, body):
         InputError, match=r"forces\.spring\.i: found 'arm\.(frame|modes1)', .*interfaces \(arm\.root, arm\.tip\)"
     ):
         load_scene(folder / "frame.yaml")
+
+
+@pytest.mark.parametrize("taken", ["frame", "modes1", "modes12"])
+def test_an_interface_with_the_name_of_the_frame_or_of_modes_is_refused(folder, taken):
+    """Its body would take the place of the modal coordinates, and the motion would be another one without a word."""
+    text = (
+        REST.replace("MOUNT", "ground")
+        .replace("\n    ", "\n")
+        .replace("tip: {", f"{taken}: {{")
+        .replace("arm.tip", f"arm.{taken}")
+    )
+    (folder / "taken.yaml").write_text(HEAD + text + TIMES)
+    with pytest.raises(InputError, match=rf"bodies\.arm\.interfaces: found '{taken}', the name of a part"):
+        load_scene(folder / "taken.yaml")

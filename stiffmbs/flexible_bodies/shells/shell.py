@@ -93,6 +93,7 @@ class Shell:
     shares: np.ndarray  # shape (triangles,): 1, or 1/2 in a quadrilateral
     materials: ElementMaterials  # of the triangles
     thickness: np.ndarray  # shape (triangles,), m
+    elements: np.ndarray  # of int, shape (triangles,): numbers of the elements that the triangles are of
 
     @cached_property
     def pairs(self) -> NodePairs:
@@ -207,7 +208,9 @@ def of_elements(
         for each in properties
     )
     of_kinds = [np.tile(thickness[kind], times[kind]) for kind in cells]
+    numbers = np.split(np.arange(sum(map(len, cells.values()))), np.cumsum([len(own) for own in cells.values()])[:-1])
+    elements = [np.tile(own, times[kind]) for kind, own in zip(cells, numbers, strict=True)]
     return Shell(
         nodes, np.concatenate(triangles), np.concatenate(offsets), np.concatenate(shares), ElementMaterials(*of_triangles),
-        np.concatenate(of_kinds),
+        np.concatenate(of_kinds), np.concatenate(elements),
     )  # fmt: skip

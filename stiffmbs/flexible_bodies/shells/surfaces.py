@@ -105,43 +105,50 @@ class Surfaces:
 def surfaces_of(shell: Shell) -> Surfaces:
     """Return the points on both surfaces of a shell."""
     axes, _, _ = axes_of(shell.places[shell.triangles] + shell.offsets)
-    normals, of_corners = axes[:, 2], shell.triangles.ravel()
-    count, groups = connected_components(_smooth(shell, normals), directed=False)
-    first = np.unique(groups, return_index=True)[1]
-    order = np.argsort(of_corners[first], kind="stable")
+    count, points = connected_components(_smooth(shell, axes[:, 2]), directed=False)
+    of_sides = np.repeat(shell.triangles.ravel(), 2)
+    first = np.unique(points, return_index=True)[1]
+    order = np.argsort(of_sides[first], kind="stable")
     rank = np.empty(count, dtype=int)
     rank[order] = np.arange(count)
-    groups, reference = rank[groups], first[order]
-    triangle = np.arange(len(of_corners)) // 3
-    along = np.einsum("ca,ca->c", normals[triangle], normals[triangle[reference][groups]]) > 0.0
-    signs = np.where(along, 1.0, -1.0)
-    mean = np.zeros((count, 3))
-    np.add.at(mean, groups, signs[:, None] * normals[triangle])
-    mean *= (shell.thickness[triangle[reference]] / 2 / np.linalg.norm(mean, axis=1))[:, None]
-    arms = np.stack([mean, -mean], axis=1).reshape(-1, 3)
-    points = 2 * groups[:, None] + np.stack([~along, along], axis=1)
-    return Surfaces(shell, np.repeat(of_corners[reference], 2), arms, points.reshape(-1, 3, 2))
+    points, reference = rank[points], first[order]
+    arms = np.zeros((count, 3))
+    np.add.at(arms, points, np.repeat(axes[:, 2], 6, axis=0) * np.tile([1.0, -1.0], 3 * len(axes))[:, None])
+    arms *= (shell.thickness[reference // 6] / 2 / np.linalg.norm(arms, axis=1))[:, None]
+    return Surfaces(shell, of_sides[reference], arms, points.reshape(-1, 3, 2))
 
 
 def _smooth(shell: Shell, normals: np.ndarray) -> coo_array:
-    """Return the graph of corners of triangles that share an edge and have common points, of shape (corners, corners)."""
+    """Return the graph of both sides of the corners of triangles: those that are one point, of shape (6 triangles, 6 triangles).
+
+    Neighbours across an edge run along it in opposite directions if their normals are on one side. More than two elements
+    at an edge are a junction, where the stress jumps.
+    """
     ends = np.concatenate([shell.triangles[:, list(side)] for side in SIDES])
     places = np.concatenate([3 * np.arange(len(normals))[:, None] + list(side) for side in SIDES])
     swapped = ends[:, 0] > ends[:, 1]
     ends[swapped], places[swapped] = ends[swapped, ::-1], places[swapped, ::-1]
-    order = np.lexsort(ends.T)
-    ends, places = ends[order], places[order]
+    edges = np.unique(ends, axis=0, return_inverse=True)[1].ravel()
+    of_elements = np.unique(np.column_stack([edges, np.tile(shell.elements, len(SIDES))]), axis=0)[:, 0]
+    junction = np.bincount(of_elements)[edges] > 2
+    order = np.argsort(edges, kind="stable")
+    edges, places, swapped, junction = edges[order], places[order], swapped[order], junction[order]
     sections = np.column_stack([*shell.materials, shell.thickness])
     pairs = []
-    for apart in range(1, len(ends)):
-        same = (ends[apart:] == ends[:-apart]).all(axis=1)
+    for apart in range(1, len(edges)):
+        same = edges[apart:] == edges[:-apart]
         if not same.any():
             break
         one, other = places[:-apart][same], places[apart:][same]
         of_one, of_other = one[:, 0] // 3, other[:, 0] // 3
-        aligned = np.abs(np.einsum("pa,pa->p", normals[of_one], normals[of_other])) >= np.cos(FOLD)
-        alike = aligned & (sections[of_one] == sections[of_other]).all(axis=1)
-        pairs.append(np.column_stack([one[alike].ravel(), other[alike].ravel()]))
+        within = shell.elements[of_one] == shell.elements[of_other]
+        turned = ~within & (swapped[:-apart] == swapped[apart:])[same]
+        cosines = np.where(turned, -1.0, 1.0) * np.einsum("pa,pa->p", normals[of_one], normals[of_other])
+        alike = (cosines >= np.cos(FOLD)) & (sections[of_one] == sections[of_other]).all(axis=1)
+        joined = alike & (within | ~junction[:-apart][same])
+        for side in (0, 1):
+            of_sides = 2 * one[joined] + side, 2 * other[joined] + (side ^ turned[joined])[:, None]
+            pairs.append(np.column_stack([each.ravel() for each in of_sides]))
     rows, columns = np.concatenate(pairs).T if pairs else np.empty((2, 0), dtype=int)
-    size = 3 * len(normals)
+    size = 6 * len(normals)
     return coo_array((np.ones(len(rows)), (rows, columns)), shape=(size, size))

@@ -140,7 +140,10 @@ class Instances:
             for section in (*NAMED, "markers") if definition.get(section) is not None
         }  # fmt: skip
         sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.", f"{name}.")
-        sections, flexible, made = self._without_flexible(sections, f"parts.{use.part}.bodies", own)
+        try:
+            sections, flexible, made = self._without_flexible(sections, f"parts.{use.part}.bodies", own)
+        except InputError as error:
+            raise InputError(f"{error} (in {name})") from None
         used = definition.get("use") or {}
         inner = tuple(repeat_entries(f"parts.{use.part}.use", used, own)) if isinstance(used, dict) else ()
         _check_sections(use.part, sections, inner, vectors)

@@ -1,6 +1,7 @@
 """Stresses on both surfaces of shells: closed forms, patches, folds and steps of thickness, and bodies in a run."""
 
 import json
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
@@ -105,17 +106,51 @@ def test_the_stress_jumps_at_a_step_of_thickness():
     np.testing.assert_allclose(np.sort(stress[at_step, 0]), bending * np.array([-1, -0.25, 0.25, 1]), rtol=0.02)
 
 
-def test_a_fold_has_the_stresses_of_both_sides():
-    """An angle under a force along it: both legs have its stress; each leg has points of its own along the fold."""
-    nodes, cells, grid = surface(4, 4, lambda a, b: (a, min(b, 0.5), max(b - 0.5, 0.0)))
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("angle", [90, 40, 10])
+def test_a_fold_has_the_stresses_of_both_sides(angle, kind):
+    """An angle under a force along one leg: each leg has its own stress and points along the fold, also in a sharp V."""
+    leg = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    nodes, cells, grid = surface(4, 4, lambda a, b: (a, *((0.5 - b, 0.0) if b < 0.5 else (b - 0.5) * leg)), kind)
     motion = np.zeros((len(nodes), 6))
-    motion[:, 1] = 1e-3 * nodes[:, 1]  # stretches one leg across the fold; the other one moves
-    found, stress = stresses(shell(nodes, cells, 1.0, 0.0, THICK), motion)
+    motion[grid[:, :3], 1] = 1e-3 * nodes[grid[:, :3], 1]  # stretches one leg across the fold; the other one is at rest
+    found, stress = stresses(shell(nodes, shuffled(cells), 1.0, 0.0, THICK), motion)
     fold = np.isin(found.nodes, grid[:, 2])
     assert fold.sum() == 4 * 5 and (~fold).sum() == 2 * 4 * 5
-    upright = np.abs(found.arms[:, 1]) > THICK / 4
-    np.testing.assert_allclose(stress[~upright, 1], 1e-3, rtol=1e-9)
-    np.testing.assert_allclose(stress[upright], 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.sort(stress[fold, 1]), np.repeat([0.0, 1e-3], 10), atol=1e-12)
+
+
+def test_a_junction_has_the_stresses_of_each_plate():
+    """A plate with a web under its middle: the stretch of one half is neither in the other half nor in the web."""
+    nodes, cells, grid = surface(4, 4, lambda a, b: (a, b - 0.5, 0.0))
+    web, _, on_web = surface(4, 2, lambda a, b: (a, 0.0, -b))
+    numbers = np.empty(len(web), dtype=int)
+    numbers[on_web[:, 0]], numbers[on_web[:, 1:].ravel()] = grid[:, 2], len(nodes) + np.arange(10)
+    nodes = np.vstack([nodes, web[on_web[:, 1:].ravel()]])
+    of_web = surface(4, 2, lambda a, b: (a, 0.0, -b))[1]["quad"]
+    motion = np.zeros((len(nodes), 6))
+    motion[grid[:, :3], 1] = 1e-3 * nodes[grid[:, :3], 1]
+    cells = shuffled({"quad": np.vstack([cells["quad"], numbers[of_web]])})
+    found, stress = stresses(shell(nodes, cells, 1.0, 0.0, THICK), motion)
+    junction = np.isin(found.nodes, grid[:, 2])
+    np.testing.assert_allclose(np.sort(stress[junction, 1]), np.repeat([0.0, 1e-3], [20, 10]), atol=1e-12)
+
+
+@pytest.mark.parametrize("half", [10, 30, 60])
+def test_the_tip_of_a_cone_has_an_outside(half):
+    """Also that of a sharp one, where normals on opposite sides point away from each other."""
+    radius, height = np.sin(np.radians(half)), np.cos(np.radians(half))
+    around = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+    rim = np.column_stack([radius * np.cos(around), radius * np.sin(around), np.full(32, height)])
+    cells = {"triangle": np.column_stack([np.zeros(32, dtype=int), 1 + np.arange(32), 1 + (np.arange(32) + 1) % 32])}
+    of = shell(np.vstack([np.zeros(3), rim]), shuffled(cells), 1.0, 0.0, THICK)
+    found = surfaces_of(of)
+    (tip,) = np.unique(np.abs(found.arms[found.nodes == 0] @ [0, 0, 1]).round(12))
+    assert len(found.nodes) == 2 * 33 and tip == pytest.approx(THICK / 2)
+    for corners, points in zip(of.triangles, found.corners, strict=True):
+        normal = np.cross(*(of.places[corners[1:]] - of.places[corners[0]]))
+        side = 0 if normal @ (of.places[corners].mean(axis=0) * [1, 1, 0]) > 0 else 1
+        assert found.arms[points[list(corners).index(0), side], 2] < 0.0
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -162,6 +197,40 @@ def test_a_body_in_equilibrium_has_the_stress_of_a_beam(cantilever):
     largest = motion.von_mises()[0]
     np.testing.assert_allclose(largest, [von_mises(stress[nodes == k]).max() for k in range(len(largest))])
     assert motion.peaks()["largest principal"].value == pytest.approx(principal_stresses(stress)[:, 0].max())
+
+
+class Record(dict):
+    """Channels with times, and with errors if they are given."""
+
+    def __init__(self, channels, **fields):
+        super().__init__(channels)
+        vars(self).update(fields)
+
+
+def test_a_held_strip_has_the_strain_energy_and_the_tension_of_its_stretch(cantilever):
+    """Both ends are held, and the middle moves by more than the thickness: most of the strain is of second order."""
+    middle = {"m": {"plane": {"point": [0.5, 0, 0], "normal": [1, 0, 0]}}}
+    held = [
+        ("bodies.plate.interfaces.m", middle["m"]),
+        ("forces.P", {"type": "force", "i": "plate.m", "force": [0, 0, "1e5*t*t/1e-4"]}),
+    ]
+    held += [
+        ("joints.other", {"type": "fixed", "i": "plate.b", "j": {"body": "ground", "point": [1, 0.1, 0]}}),
+        ("gravity", [0, 0, 0]),
+    ]
+    scene = load_scene(cantilever / "scene.yaml", held)
+    solution = run(scene)
+    motion = FlexibleMotion(scene, solution, "plate")
+    assert solution["plate.m.z"].max() > THICK
+    np.testing.assert_allclose(motion.strain_energy().sum(axis=1), solution["energy.potential"], rtol=1e-6, atol=1e-9)
+    place, error = "plate.modes1.x", 1e-9
+    peak = motion.peaks()["von Mises"]
+    moved = {key: value + error * (key == place) for key, value in solution.items()}
+    changed = FlexibleMotion(scene, Record(moved, t=solution.t), "plate").peaks()["von Mises"].value - peak.value
+    places = [key for key in solution if ".modes" in key and key[-2:] in (".x", ".y", ".z")]
+    errors = {key: SimpleNamespace(over_time=error * (key == place)) for key in places}
+    verified = FlexibleMotion(scene, Record(solution, t=solution.t, errors=errors), "plate")
+    assert verified.error_of_stress(peak) == pytest.approx(abs(changed), rel=1e-3)
 
 
 def test_commands_and_pictures_have_the_stresses(cantilever):
