@@ -191,10 +191,22 @@ def _angles(equations: Equations) -> dict[str, Any]:
 
 
 def _positions(equations: Equations) -> dict[str, Any]:
-    """Return the unknowns that are positions of bodies."""
-    found = equations.at["q"][: equations.system.n_pose]
-    found = found[found != ABSENT]
-    return {"n_positions": len(found), "position": np.int64(found)}
+    """Return the unknowns that are positions of bodies, and those of the velocities along or about the same axis, or `ABSENT`."""
+    of_body, n_pose = equations.system.of_body, equations.system.n_pose
+    number = np.arange(n_pose) % of_body.n_q
+    along = (
+        number if of_body.dimensions == 2 else number - (number > of_body.linear)
+    )  # the first of a quaternion has no axis
+    place = np.arange(n_pose) // of_body.n_q * of_body.n_u + along
+    velocity = np.append(equations.at["u"], ABSENT)[np.minimum(place, len(equations.at["u"]))]
+    if of_body.dimensions == 3:
+        velocity[number == of_body.linear] = ABSENT
+    found = equations.at["q"][:n_pose]
+    kept = found != ABSENT
+    return {
+        "n_positions": int(kept.sum()), "position": np.int64(found[kept]), "velocity": np.int64(velocity[kept]),
+        "prescribed": np.zeros(int(kept.sum()), dtype=np.int64),
+    }  # fmt: skip
 
 
 def _arrays(c: Collocation) -> dict[str, Any]:

@@ -177,11 +177,42 @@ def _find_corrections(x, c):
 
 
 @compiled
+def _close_prescribed(x, t, place, target):
+    """Move the positions and velocities at a place that joints and drives prescribe onto these, by Newton corrections; others stay."""
+    polynomial(x, place, x.n_all, x.y_stage)
+    polynomial_rates(x, place, x.yp_stage)
+    copied(target, x.y_stage, x.n)
+    before = float("inf")
+    for _ in range(POLISHING.most_corrections):
+        residual(x, t, x.y_stage, x.yp_stage, x.b, x.misfit)
+        for k in range(x.n):
+            x.b[k] = -x.b[k] if x.weight[k] == 0.0 and x.algebraic[k] > 0.0 else 0.0
+        solved_real(x)
+        size = 0.0
+        for i in range(x.n_positions):
+            if x.prescribed[i]:
+                k = x.position[i]
+                x.y_stage[k] += x.x[k]
+                part = x.x[k] * x.weight[k]
+                size += part * part
+                if x.velocity[i] >= 0:
+                    x.y_stage[x.velocity[i]] += x.x[x.velocity[i]]
+        if not size <= before:
+            return
+        copied(target, x.y_stage, x.n)
+        if size <= x.newton * x.newton * x.n_tested:
+            return
+        before = size
+
+
+@compiled
 def dense_output(x, t, place, target):
     """Compute the state at a place of the last step; return False if it stays open."""
-    is_long = x.h_past > output_correction_view(x.output_correction).long or x.apart > x.newton
-    if not (is_long and x.h_factored > 0.0 and place < 1.0):
-        polynomial(x, place, x.n, target)
+    if not (x.h_past > output_correction_view(x.output_correction).long and x.h_factored > 0.0 and place < 1.0):
+        if x.apart > x.newton and x.h_factored > 0.0 and place < 1.0:
+            _close_prescribed(x, t, place, target)
+        else:
+            polynomial(x, place, x.n, target)
         return True
     c = collocation_view(ints(x.methods[x.method_past]))
     if x.suffice == UNKNOWN:  # a polynomial of corrections costs less than a Newton iteration for each output

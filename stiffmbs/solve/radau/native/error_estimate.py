@@ -153,7 +153,8 @@ def _between_nodes(x, c, h):
         defect = h * x.yp[k]
         for j in range(c.stages):
             defect += c.error[j] * x.z[j * x.n_all + k]
-        if abs(x.error[k]) <= x.rtol * abs(defect):
+        x.prescribed[i] = abs(x.error[k]) <= x.rtol * abs(defect)
+        if x.prescribed[i]:
             part = c.most_between * defect * x.weight[k]
             total += part * part
     return sqrt(total / x.n_tested)

@@ -20,7 +20,7 @@ RADAU = Layout({
     "n_terms": INT, "terms": FLOATS, "terms_aside": FLOATS, "entries": FLOATS, "n_all": INT, "n_efforts": INT, "acting": INT_CELL, "effort_source": INDICES,
     "n_levers": INT, "lever_source": INDICES, "lever_effort": INDICES, "lever_unknown": INDICES, "lever_factor": FLOATS, "lever": FLOATS,
     "n_slopes": INT, "slope_source": INDICES, "slope_effort": INDICES, "slope_unknown": INDICES, "slope_factor": FLOATS, "slope": FLOATS, "misfit": FLOATS, "at_b": INT, "b": FLOATS, "at_x": INT, "x": FLOATS, "at_pair_b": INT, "pair_b": FLOATS, "at_pair_x": INT, "pair_x": FLOATS,
-    "output_correction": INTS, "error_norm": INTS, "step_bound": INTS, "n_angles": INT, "angle": INTS, "spin": INTS, "n_positions": INT, "position": INTS,
+    "output_correction": INTS, "error_norm": INTS, "step_bound": INTS, "n_angles": INT, "angle": INTS, "spin": INTS, "n_positions": INT, "position": INTS, "velocity": INTS, "prescribed": INTS,
     "y": FLOATS, "yp": FLOATS, "y_stage": FLOATS, "yp_stage": FLOATS, "z": FLOATS, "r": FLOATS, "d": FLOATS, "past": FLOATS, "y_past": FLOATS, "error": FLOATS, "weight": FLOATS,
     "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "decaying": INT_CELL,
@@ -43,7 +43,8 @@ their values; the number of efforts that are unknowns in this step, all or none;
 in each stage.  Vectors of a linear system, real and complex.  The state y and y' at t; stages and residuals; the polynomial of the last
 step with its beginning; error estimate and inverse tolerances.
 
-Unknowns that are angles of bodies in the plane, and their angular velocities. Unknowns that are positions.
+Unknowns that are angles of bodies in the plane, and their angular velocities. Unknowns that are positions, and their velocities or -1; 1 for those that joints and
+drives prescribed in the last step.
 
 Rows without rates have the value 1 in `algebraic`; `n_closing` of these belong to joints.
 
