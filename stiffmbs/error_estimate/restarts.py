@@ -26,7 +26,7 @@ def after_restart(
     """Return the error (dq, du, ds) after a restart from that before it, as a part at the event and a delay of the motion, s.
 
     `before`, `after`: the state on both sides, one each. `fired`: event functions. `on_left`: a state just before, with the
-    rates there. At an event g = 0, the time is late by dt = -(g_q e_q + g_u e_u) / g', and e+ = jump(e- + f- dt) - f+ dt.
+    rates there. An event of g is late by dt = (g - g_q e_q - g_u e_u) / g', as g is not exactly zero, and e+ = jump(e- + f- dt) - f+ dt.
     """
     system = dynamics.system
     rates = np.concatenate([on_left.q_rates[0], on_left.acceleration[0]])
@@ -102,7 +102,7 @@ def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.n
         return late / (2.0 * size) if np.isfinite(late) else 0.0
     slope, by_error = (after - before) / (2.0 * step), (value(0.0, size) - value(0.0, -size)) / (2.0 * size)
     with np.errstate(divide="ignore", invalid="ignore"):
-        late = float(-np.float64(by_error) / slope)
+        late = float((now - np.float64(by_error)) / slope)
     return late if np.isfinite(late) else 0.0
 
 
