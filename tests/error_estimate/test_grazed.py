@@ -159,3 +159,28 @@ def test_stages_of_explicit_steps_that_end_at_a_stop_are_before_it(rtol):
     error = abs(found["b.x"][-1] - (impulse * (0.5 * end + (end - times).sum()) - later))
     assert error < rtol
     assert 0.5 * error < found.errors["b.x"].over_time < 2.0 * error
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_a_driven_arm_in_space_that_touches_a_stop(rtol):
+    """`radau` prescribes quaternions at its nodes; between them, they are closed onto the drive."""
+    w, k, end, c = 14.466, 1.16e6, 5.0, 0.9999912
+    turned = "orientation: {x: [0.955336489125606, 0.29552020666133955, 0], z: [0, 0, 1]}"
+    scene = f"""
+        dimensions: 3
+        gravity: [0, 0, 0]
+        bodies:
+          arm: {{mass: 1, inertia: [1, 1, 1], {turned}, markers: {{tip: {{point: [1, 0, 0]}}}}}}
+          b: {{mass: 1, inertia: [1, 1, 1], position: [0, 1, 0]}}
+        joints:
+          hinge: {{type: revolute, i: arm, j: {{body: ground, {turned}}}}}
+          motor: {{type: drive, joint: hinge, position: "{w}*t"}}
+        forces: {{push: {{type: force, i: b, force: ["{k}*max(dx(arm.tip) - {c}, 0)", 0, 0]}}}}
+        run: {{duration: {end}, points: 11}}
+        """
+    found = stiffmbs.run(stiffmbs.read_scene(scene), solver="radau", rtol=rtol, errors=True)
+    reach = np.arccos(c) / w
+    pushed = 2.0 * k * (np.sin(w * reach) / w - c * reach) * (end - (2.0 * np.pi * np.arange(1, 12) - 0.3) / w).sum()
+    error = abs(found["b.x"][-1] - pushed)
+    assert error < 1e-2 * pushed * np.sqrt(rtol)
+    assert 0.3 * error < found.errors["b.x"].over_time < 3.0 * error

@@ -71,19 +71,8 @@ def radau(stages: int) -> Collocation:
     correction = Polynomial.fromroots(nodes).integ() / np.prod(-nodes)
     most = float(np.abs(correction(nodes)).max())  # its extrema are the nodes
     return Collocation(
-        nodes,
-        derivative,
-        transform,
-        inverse,
-        gamma,
-        alpha,
-        beta,
-        error,
-        weights,
-        gamma * correction.coef,
-        _between(points),
-        most,
-    )
+        nodes, derivative, transform, inverse, gamma, alpha, beta, error, weights, gamma * correction.coef, _between(points), most
+    )  # fmt: skip
 
 
 def _between(points: np.ndarray) -> np.ndarray:

@@ -194,13 +194,10 @@ def _positions(equations: Equations) -> dict[str, Any]:
     """Return the unknowns that are positions of bodies, and those of the velocities along or about the same axis, or `ABSENT`."""
     of_body, n_pose = equations.system.of_body, equations.system.n_pose
     number = np.arange(n_pose) % of_body.n_q
-    along = (
-        number if of_body.dimensions == 2 else number - (number > of_body.linear)
-    )  # the first of a quaternion has no axis
-    place = np.arange(n_pose) // of_body.n_q * of_body.n_u + along
-    velocity = np.append(equations.at["u"], ABSENT)[np.minimum(place, len(equations.at["u"]))]
-    if of_body.dimensions == 3:
-        velocity[number == of_body.linear] = ABSENT
+    scalar = (number == of_body.linear) & (of_body.dimensions == 3)  # the first number of a quaternion has no axis
+    before = (number > of_body.linear) & (of_body.dimensions == 3)
+    place = np.arange(n_pose) // of_body.n_q * of_body.n_u + number - before
+    velocity = np.where(scalar, ABSENT, equations.at["u"][place])
     found = equations.at["q"][:n_pose]
     kept = found != ABSENT
     return {
@@ -213,13 +210,9 @@ def _arrays(c: Collocation) -> dict[str, Any]:
     """Return the contents of the table of a method."""
     arrays = {name: np.ascontiguousarray(value) for name, value in vars(c).items() if isinstance(value, np.ndarray)}
     return {
-        **arrays,
-        "stages": c.stages,
-        "pairs": len(c.alpha),
-        "gamma": c.gamma,
-        "n_between": len(c.between),
+        **arrays, "stages": c.stages, "pairs": len(c.alpha), "gamma": c.gamma, "n_between": len(c.between),
         "most_between": c.most_between,
-    }
+    }  # fmt: skip
 
 
 def _costs(stages: int, cost: ImplicitCost, pair_cost: float, parameters: RadauParameters) -> dict[str, float]:

@@ -48,6 +48,8 @@ drives prescribed in the last step.
 
 Rows without rates have the value 1 in `algebraic`; `n_closing` of these belong to joints.
 
+Cell `apart`: error of prescribed positions between the nodes of the last step, in tolerances.
+
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
 the beginning of the step, 1 to make it that of the predicted end.  Convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
