@@ -58,7 +58,7 @@ from stiffmbs.elements.spatial.joints.thread import Thread as _Thread
 from stiffmbs.elements.spatial.joints.universal import Universal as _Universal
 from stiffmbs.elements.spatial.marker import Marker as _Marker
 from stiffmbs.model.beams.spatial import BeamBody as _BeamBody
-from stiffmbs.model.flexible import SceneFlexibleBody as _FlexibleBody
+from stiffmbs.model.flexible import FlexibleBody as _FlexibleBody
 
 from .analyses.in_space import in_space as in_space
 from .elements.element import Force as Force

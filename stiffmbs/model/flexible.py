@@ -22,7 +22,7 @@ from ..elements.spatial.joints.point_on_plane import PointOnPlane
 from ..elements.spatial.marker import ORIGIN, Marker, Point
 from ..elements.spatial.orientation import IDENTITY, Orientation, matrix
 from ..errors import InputError, prefixed
-from ..flexible_bodies.description import FlexibleBody, InterfaceOfNodes
+from ..flexible_bodies import description
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
 from ..reading.fields import Described, Measured, located
@@ -59,7 +59,7 @@ class FlexibleHandle(Handles):
     what = "interface"
 
 
-class SceneFlexibleBody(FlexibleBody, LineBody):
+class FlexibleBody(description.FlexibleBody, LineBody):
     """Flexible body of a scene or a model. Files of a model are relative to the current folder."""
 
     type: Literal["flexible"] = "flexible"
@@ -84,7 +84,7 @@ class SceneFlexibleBody(FlexibleBody, LineBody):
 
     @field_validator("interfaces")
     @classmethod
-    def _other_names(cls, found: dict[str, InterfaceOfNodes]) -> dict[str, InterfaceOfNodes]:
+    def _other_names(cls, found: dict[str, description.InterfaceOfNodes]) -> dict[str, description.InterfaceOfNodes]:
         """Refuse interfaces with the name of the frame or of modal coordinates, whose bodies they would replace."""
         taken = [name for name in found if name == FRAME or (name.startswith(MODES) and name[len(MODES) :].isdigit())]
         if taken:
@@ -123,14 +123,14 @@ def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
     return {**raw, "bodies": added_bodies, "joints": added_joints}
 
 
-def described(entry: object, where: str, context: Context) -> SceneFlexibleBody:
+def described(entry: object, where: str, context: Context) -> FlexibleBody:
     """Return the description of a flexible body; `where` is its path in the scene. Raises InputError."""
     with located(where):
-        return SceneFlexibleBody.model_validate(entry, context=dict(context))
+        return FlexibleBody.model_validate(entry, context=dict(context))
 
 
 def bodies_and_joints(
-    name: str, body: SceneFlexibleBody, context: Context, where: str = ""
+    name: str, body: FlexibleBody, context: Context, where: str = ""
 ) -> tuple[dict[str, Body], dict[str, Joint]]:
     """Return the bodies and joints of a flexible body by their names; its path is ``bodies.NAME`` unless given. Raises InputError."""
     folder = Path(context.get(FOLDER) or "")
@@ -139,7 +139,7 @@ def bodies_and_joints(
     return dict(parts.bodies()), dict(parts.joints())
 
 
-def placed(body: SceneFlexibleBody, frame: Any) -> SceneFlexibleBody:
+def placed(body: FlexibleBody, frame: Any) -> FlexibleBody:
     """Return a flexible body of a part in ground axes. `frame`: a SpatialFrame; of a mirrored part, the mesh is mirrored too."""
     axes = "".join(axis for axis, sign in zip("xyz", frame.signs * body.signs, strict=True) if sign < 0.0)
     return body.model_copy(update={
@@ -148,7 +148,7 @@ def placed(body: SceneFlexibleBody, frame: Any) -> SceneFlexibleBody:
     })  # fmt: skip
 
 
-def described_bodies(bodies: Mapping[str, object]) -> dict[str, SceneFlexibleBody]:
+def described_bodies(bodies: Mapping[str, object]) -> dict[str, FlexibleBody]:
     """Return the descriptions of the flexible bodies of a scene by their names."""
     frames = ((name, body) for name, body in bodies.items() if isinstance(body, FloatingFrame))
     return {name.removesuffix(f".{FRAME}"): frame.source[0] for name, frame in frames}
@@ -210,7 +210,7 @@ class _Parts:
     """
 
     def __init__(
-        self, name: str, body: SceneFlexibleBody, reduced: ReducedBody, folder: Path, axes: object = None,
+        self, name: str, body: FlexibleBody, reduced: ReducedBody, folder: Path, axes: object = None,
         turn: np.ndarray | None = None,
     ) -> None:  # fmt: skip
         self._inertia = reduced.inertia.tolist() if axes is None else axes

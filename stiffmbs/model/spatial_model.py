@@ -39,10 +39,10 @@ class OrFlexible:
     """Marker of bodies that a scene may describe as flexible, for its schema."""
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        from .flexible import SceneFlexibleBody
+        from .flexible import FlexibleBody
 
-        SceneFlexibleBody.model_rebuild()
-        flexible = core_schema.definitions_schema(SceneFlexibleBody.__pydantic_core_schema__, [])
+        FlexibleBody.model_rebuild()
+        flexible = core_schema.definitions_schema(FlexibleBody.__pydantic_core_schema__, [])
         return {"anyOf": [handler(schema), handler(flexible)]}
 
 
