@@ -9,6 +9,7 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
+from ..solve.events.discontinuity import event_functions
 from ..solve.events.restart import restarted
 from .coordinates import as_rows, displaced
 from .evaluated import Evaluated, evaluated, motion
@@ -78,10 +79,7 @@ def beyond_event(
 
 def _event_values(dynamics: Dynamics, fired: tuple[int, ...], t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the values of some event functions at a state."""
-    state = dynamics.state
-    state.q[:], state.u[:] = q, u
-    state.evaluate("event_function", t)
-    return np.array(state.values["event_function"][list(fired)])
+    return event_functions(dynamics, np.array([t]), q[None], u[None])[0, list(fired)]
 
 
 def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray) -> float:
