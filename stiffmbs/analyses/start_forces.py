@@ -84,10 +84,9 @@ def start_force_notes(
     """Yield a note on the element with by far the largest force that comes from the drawn or assembled pose.
 
     `rows`: output rows whose first is the start, if known. `before`: elements of the stage before, if there is one; only
-    added ones have such forces. A start in an equilibrium has none.
+    added ones have such forces. A start in an equilibrium has those of bodies that are held.
     """
-    if before is None and isinstance(data, Scene) and data.start != "described":
-        return
+    is_settled = before is None and isinstance(data, Scene) and data.start != "described"
     if not any(map(_is_elastic, dynamics.system.groups)):
         return
     if rows is None:
@@ -103,7 +102,8 @@ def start_force_notes(
         if worst.force > OF_WEIGHT * heavy or by_weight < STIFF * system.size:
             with dynamics.state.unchanged():
                 loaded = DRAWN_LOADED if before is None else ADDED_LOADED
-                yield from _notes(dynamics, start, t, worst, energy, loaded)
+                settled = added if is_settled else _in_equilibrium(dynamics, start, t)
+                yield from _notes(dynamics, start, t, worst, energy, loaded, settled)
             return
 
 
@@ -178,14 +178,19 @@ def _suspects(system: System, start: InitialValues, elements: list[Stretched]) -
 
 
 def _notes(
-    dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float, loaded: NoteKind
+    dynamics: Dynamics,
+    start: InitialValues,
+    t: float,
+    worst: Stretched,
+    energy: float,
+    loaded: NoteKind,
+    settled: list[Stretched],
 ) -> Iterator[Note]:
     """Yield the note on an element, unless forces of its size act in the equilibrium.
 
-    `loaded`: kind of the note if the equilibrium relieves the element.
+    `loaded`: kind of the note if the equilibrium relieves the element. `settled`: the elements in the equilibrium, if it is found.
     """
     system, heavy = dynamics.system, weight(dynamics.system)
-    settled = _in_equilibrium(dynamics, start, t)
     usual = OF_EQUILIBRIUM * max(each.force for each in settled) if settled else OF_WEIGHT * heavy
     loads = OF_EQUILIBRIUM * max((each.force for each in settled if not each.elastic), default=0.0)
     if not worst.force > min(usual, max(loads, OF_WEIGHT * heavy)):

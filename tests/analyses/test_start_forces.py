@@ -243,3 +243,25 @@ def test_a_speed_that_forces_determine_far_from_the_described_one_has_a_note(giv
     assert found["sled.vx"] == pytest.approx(3)
     noted = any("a steady motion of 3 m/s; the velocity of start is 8 m/s" in note for note in found.notes)
     assert noted == (given == 8.0)
+
+
+@pytest.mark.parametrize("start", ["described", "settled", "equilibrium"])
+@pytest.mark.parametrize(("apart", "noted"), [(1.02, True), (1.0, False)])
+def test_a_beam_between_joints_that_do_not_fit_has_a_note_from_any_start(start: str, apart: float, noted: bool) -> None:
+    """It keeps E A / L times 20 mm in the equilibrium, where nothing moves."""
+    scene = f"""
+    dimensions: 3
+    gravity: [0, 0, -9.81]
+    bodies:
+      rod: {{type: beam, start: [0, 0, 0], end: [1, 0, 0], elements: 4, section: {{type: circle, diameter: 20 mm}}, material: {{E: 210 GPa, nu: 0.3, density: 7800 kg/m^3}}}}
+    joints:
+      a: {{type: fixed, i: rod.start, j: ground}}
+      b: {{type: spherical, i: rod.end, j: {{body: ground, point: [{apart}, 0, 0]}}}}
+    start: {start}
+    run: {{duration: 1 ms, points: 2}}
+    """
+    found = [note for note in run(read_scene(scene)).notes if "starts with" in note]
+    assert bool(found) == noted
+    assert all(
+        "in the static equilibrium it carries 1.3" in note and "pose that does not fit" in note for note in found
+    )

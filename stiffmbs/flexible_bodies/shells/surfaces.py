@@ -19,7 +19,8 @@ from .stress import ShellStress, second_order_strains
 from .triangle import MIDDLES, SIDES, axes_of
 
 FOLD = 0.5
-"""Largest angle between the normals of two triangles without a fold between them, rad; flat elements of curved shells have less."""
+"""Largest angle between the normals of two triangles without a fold between them, rad; flat elements of curved shells have less.
+Source: ``tests/flexible_bodies/shells/test_shell_stresses.py``."""
 TO_CORNERS = np.linalg.inv(MIDDLES)
 """Values at the corners of a triangle by those in the middles of its sides; both are linear."""
 PLANE = np.array([[[1, 0], [0, 0]], [[0, 0], [0, 1]], [[0, 1], [1, 0]]], dtype=float)
