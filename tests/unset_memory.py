@@ -11,19 +11,19 @@ from stiffmbs.compile.machine.translate.code import Code
 CACHE, OWN = "STIFFMBS_CACHE", "STIFFMBS_UNSET_MEMORY"
 FILL = "llvm.memset.p0.i64"
 
-_array = Code.array
+_doubles = Code.doubles
 
 
 def pytest_configure() -> None:
     """Fill the local arrays of all functions that this process and its workers compile from now on."""
     if OWN not in os.environ:
         os.environ[OWN] = os.environ[CACHE] = tempfile.mkdtemp(prefix="unset")
-    Code.array = filled_array
+    Code.doubles = filled_doubles
 
 
-def filled_array(code, count):
-    """Allocate doubles for the duration of the function, as `Code.array`; all bytes are 0xFF, which is NaN."""
-    array = _array(code, count)
+def filled_doubles(code, count):
+    """Allocate doubles for the duration of the function, as `Code.doubles`; all bytes are 0xFF, which is NaN."""
+    array = _doubles(code, count)
     code.unit.declare(f"declare void @{FILL}(ptr, i8, i64, i1)")
     code._entry.append(f"call void @{FILL}(ptr {array.text}, i8 -1, i64 {8 * count}, i1 false)")
     return array

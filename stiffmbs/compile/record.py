@@ -21,7 +21,6 @@ from ..cache import entries, library
 from ..cache.installed import installed_version
 from ..cache.source_files import digest_of, python_files
 from ..elements.element import CompiledTerms, Component, Element
-from ..errors import InputError
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
@@ -207,17 +206,6 @@ def _terms(kind: Kind) -> Derived:
     from .symbolic.derive import derive
 
     return derive(kind)
-
-
-def loops_along(kind: Kind, term_set: str) -> str:
-    """Return the source of the directional derivatives of a kind with kernels written as loops.
-
-    Raises InputError if it has none.
-    """
-    terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
-    if terms.along is None:
-        raise InputError("found no derivatives by parameters, expected elements that have them")
-    return str(terms.along(_places(terms, term_set)))
 
 
 def _places(terms: CompiledTerms, term_set: str) -> dict[str, int]:

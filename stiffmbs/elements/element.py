@@ -93,8 +93,6 @@ class CompiledTerms:
     patterns: Mapping[str, list[tuple[int, int]]]
     # return the source of a kernel with some terms, given their places in it by name
     source: Callable[[Mapping[str, int]], str]
-    # return that of a kernel with their directional derivatives (`stiffmbs.compile.directional`)
-    along: Callable[[Mapping[str, int]], str] | None = None
 
 
 class Component(Described):

@@ -25,7 +25,7 @@ def kernel(value):
 def test_a_read_before_a_write_shows(tmp_path, monkeypatch):
     """The plugin itself: an entry that is never written makes a sum NaN, even with a factor of zero."""
     monkeypatch.setenv(unset_memory.CACHE, str(tmp_path))
-    monkeypatch.setattr(unset_memory.Code, "array", unset_memory.filled_array)
+    monkeypatch.setattr(unset_memory.Code, "doubles", unset_memory.filled_doubles)
     value = np.zeros(1)
     compiled_source(READS, "kernel", "void(float64*)").call(value.ctypes.data)
     assert np.isnan(value[0])

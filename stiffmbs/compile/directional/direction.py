@@ -15,7 +15,7 @@ from ..machine.layout import packed
 from ..machine.linking import Compiled
 from ..machine.native.tables import DIRECTION
 from ..machine.routines import Routine
-from ..record import loops_along, source_of
+from ..record import source_of
 from ..state import State
 from ..system import System
 from ..terms import TERM_AXES
@@ -29,8 +29,8 @@ EVERYTHING = (NUMBER, *STATE)
 class Numbers:
     """Derivatives of a system's numbers with respect to a parameter.
 
-    `of_groups`: for each group of elements the derivatives of its numbers; table arguments keep their values
-    (`stiffmbs.compile.directional.source`). `moved`: groups with numbers that change. `mass` of shape (n_u,).
+    `of_groups`: for each group of elements the derivatives of its numbers; those of table arguments are zero.
+    `moved`: groups with numbers that change. `mass` of shape (n_u,).
     """
 
     of_groups: tuple[np.ndarray, ...]
@@ -50,19 +50,12 @@ def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Com
     Raises InputError if an equation cannot be differentiated; names the kind.
     """
     source = source_of(kind, term_set)
-    if source is None:
-        return None
+    found = directional_source(source, along) if source else ""
     name = with_place(kind, "")
     try:
-        by_loops = hasattr(kind.element, "compiled_terms")
-        found = loops_along(kind, term_set) if by_loops else directional_source(source, "kernel", along)
+        return compiled_source(found, "kernel", SIGNATURE, Description(f"{name}, derivatives")) if found else None
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    if not by_loops and all(
-        line.endswith("] = 0.0") for line in found.splitlines() if line.lstrip().startswith("value[")
-    ):
-        return None
-    return compiled_source(found, "kernel", SIGNATURE, Description(f"{name}, derivatives"))
 
 
 @dataclass
@@ -93,6 +86,7 @@ class Direction:
         self.q, self.u, self.a = self._q[: system.n_q], self._u[: system.n_u], self._a[: system.n_u]
         self.lam, self.mu = np.zeros(system.n_c), np.zeros(system.n_c)
         self.values = np.zeros(len(self.state.values[self.term_set]))
+        self._terms = np.zeros_like(self.values)
         first = system.constants(self.term_set)["M"]
         self.values[first : first + system.n_u] = self.numbers.mass
         self._calls = self._made_calls(system)
@@ -102,7 +96,7 @@ class Direction:
             {
                 "q": self._q, "turn": self._turn, "u": self._u, "a": self._a, "lam": self.lam, "mu": self.mu,
                 "n_turned": len(self._turned), "turned": self._turned, "n_calls": len(self._calls), "calls": self._calls,
-                "values": self.values,
+                "values": self.values, "terms": self._terms,
             },
         )  # fmt: skip
 

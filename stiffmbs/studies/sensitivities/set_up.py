@@ -106,7 +106,7 @@ class SetUp:
             mass = self.derivative([other.mass for other in self._systems])
         moved = frozenset(g for g, numbers in enumerate(of_groups) if numbers.any())
         for g, numbers in enumerate(of_groups):
-            self._keep_points_of_tables(g, numbers)
+            self._refuse_moved_points(g, numbers)
         return Numbers(tuple(map(np.ascontiguousarray, of_groups)), moved, mass)
 
     def _numbers_of_changed(self) -> list[np.ndarray]:
@@ -142,8 +142,8 @@ class SetUp:
             f"to: found that '{self.parameter.name}' changes the equations of '{name}', expected a parameter that changes numbers"
         )
 
-    def _keep_points_of_tables(self, g: int, numbers: np.ndarray) -> None:
-        """Copy the points of tables, which must not move, to the derivatives (`stiffmbs.compile.directional.source`)."""
+    def _refuse_moved_points(self, g: int, numbers: np.ndarray) -> None:
+        """Raise InputError if points of tables move along their argument."""
         group = self._job.dynamics.system.groups[g]
         if not any(_has_table(shape) for _, shape in group.kind.fields):
             return
@@ -157,7 +157,6 @@ class SetUp:
                         f"to: found that '{self.parameter.name}' moves points of a table of '{name}' along its argument, "
                         "expected one that changes its values"
                     )
-                numbers[points] = group.numbers[points]
 
     @cached_property
     def start(self) -> tuple[np.ndarray, np.ndarray]:

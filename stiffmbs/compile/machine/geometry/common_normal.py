@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from math import sqrt
 
+from ....errors import InputError
 from ..native.access import compiled, room, shifted
+from ..translate.arithmetic import sum_of_products
 from ..translate.code import Code, constant
-from ..translate.values import Operand, Value, builtin
+from ..translate.values import Operand, Value, builtin, dual, slope_of, undirected
 from .ellipsoids import (
     POSE,
     SQUARES,
@@ -44,22 +46,32 @@ FLAT, ROUGHLY = 1e-14, 1e-8
 
 
 def _posed(code: Code, arguments: tuple[Operand, ...]) -> Value:
-    array = code.array(len(arguments))
+    array = code.doubles(len(arguments))
     for k, argument in enumerate(arguments):
-        code.store(code.item(array, constant(k)), code.converted(argument, "float"))
+        code.store(code.item(array, constant(k)), code.converted(undirected(argument), "float"))
     return array
 
 
 @builtin
 def common_normal(code: Code, component: Operand, *pose: Operand) -> Value | None:
     """Return a component of the normal in the axes of j, from j to i; all components are computed together."""
-    known = code.kept("common_normal", POSE + 3)
-    return code.unit.called(code, _component, [code.integer(component), _posed(code, pose), known])
+    known, at, number = code.kept("common_normal", POSE + 3), _posed(code, pose), code.integer(component)
+    found, normal = code.unit.called(code, _component, [number, at, known]), shifted.lower(code, known, constant(POSE))
+    if found is None or not any(map(slope_of, pose)):
+        return found
+    slopes = (
+        (slope, by)
+        for k, slope in enumerate(map(slope_of, pose))
+        if slope and (by := code.unit.called(code, _slope, [number, constant(k), normal, at]))
+    )
+    return dual(found, sum_of_products(code, slopes))
 
 
 @builtin
 def common_normal_slope(code: Code, component: Operand, by: Operand, *normal_and_pose: Operand) -> Value | None:
     """Return the derivative of a component with respect to an entry of the pose, at the normal."""
+    if any(map(slope_of, normal_and_pose)):
+        raise InputError("found a contact of solids whose second derivatives are needed, expected another contact")
     normal, pose = _posed(code, normal_and_pose[:3]), _posed(code, normal_and_pose[3:])
     return code.unit.called(code, _slope, [code.integer(component), code.integer(by), normal, pose])
 

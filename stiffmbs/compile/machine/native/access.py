@@ -10,7 +10,7 @@ from typing import Any
 
 from ..layout import CELLS, INT, POINTERS, Layout
 from ..translate.code import Code, constant
-from ..translate.values import Builtin, Cell, Operand, Record, Untranslatable, Value, builtin
+from ..translate.values import Builtin, Cell, Dual, Operand, Record, Untranslatable, Value, builtin, dual
 from .tables import EQUATIONS, FACTORS, STATE
 
 
@@ -38,12 +38,26 @@ def ints(code: Code, address: Operand) -> Value:
 @builtin
 def shifted(code: Code, pointer: Value, count: Operand) -> Value:
     """Return the pointer `count` items further on."""
+    if isinstance(pointer, Dual):
+        return dual(shifted.lower(code, pointer.value, count), shifted.lower(code, pointer.slope, count))
     return Value(pointer.kind, code.item(pointer, count).text)
 
 
 @builtin
+def with_derivative(code: Code, value: Value, slope: Value) -> Value:
+    """Return a number or pointer with its derivative; functions called with it are differentiated in forward mode."""
+    return dual(value, slope)
+
+
+@builtin
+def has_derivative(code: Code, value: Value) -> Value:
+    """Return True in a function that is differentiated by this number or pointer."""
+    return constant(isinstance(value, Dual))
+
+
+@builtin
 def room(code: Code, count: Operand) -> Value:
-    """Return memory for the given number of doubles, for the duration of the function."""
+    """Return memory for the given count of numbers, for the duration of the function."""
     return code.array(int(code.integer(count).text))
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+from ....errors import InputError
+from ..translate.arithmetic import sum_of_products
 from ..translate.code import Code, constant
-from ..translate.values import Operand, builtin
+from ..translate.values import Dual, Operand, Value, builtin, dual, slope_of, undirected
 
 
 @builtin
@@ -14,10 +16,12 @@ def python_call(code: Code, address: Operand, count: Operand, output: Operand, b
 
     One number of the element is the address of two words: the C function, and the flag for a call without an answer.
     """
-    array, answer_at = code.array(len(arguments) + 1), constant(len(arguments))
+    if any(isinstance(argument, Dual) for argument in arguments):
+        return _with_derivative(code, (undirected(address), count, output), by, arguments)
+    array, answer_at = code.doubles(len(arguments) + 1), constant(len(arguments))
     for k, argument in enumerate((*arguments, constant(math.nan))):
         code.store(code.item(array, constant(k)), argument)
-    whole = code.put_value("int", f"fptosi {code.converted(address, 'float').typed} to i64")
+    whole = code.put_value("int", f"fptosi {code.converted(undirected(address), 'float').typed} to i64")
     words = code.put_value("ints", f"inttoptr {whole.typed} to ptr")
     function = code.put_value("ints", f"inttoptr {code.load(code.item(words, constant(0))).typed} to ptr")
     given = ", ".join(code.integer(part).typed for part in (count, output, by, answer_at))
@@ -27,3 +31,18 @@ def python_call(code: Code, address: Operand, count: Operand, output: Operand, b
     unanswered = code.item(words, constant(1))
     code.store(unanswered, code.put_value("int", f"or {code.load(unanswered).typed}, {code.integer(is_open).text}"))
     return answer
+
+
+def _with_derivative(
+    code: Code, function: tuple[Operand, ...], by: Operand, arguments: tuple[Operand, ...]
+) -> Value:  # fmt: skip
+    """Return a value of a Python function and its derivative in the direction of its arguments."""
+    if int(undirected(by).text) >= 0:
+        raise InputError("found a Python function whose second derivatives are needed, expected a formula in its place")
+    given = [undirected(argument) for argument in arguments]
+    slopes = (
+        (slope, python_call.lower(code, *function, constant(k), *given))
+        for k, slope in enumerate(map(slope_of, arguments))
+        if slope
+    )
+    return dual(python_call.lower(code, *function, by, *given), sum_of_products(code, slopes))

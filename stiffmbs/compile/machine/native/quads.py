@@ -10,7 +10,18 @@ from typing import Any
 
 from ..layout import QUAD
 from ..translate.code import Code, constant
-from ..translate.values import LLVM_TYPES, Builtin, Operand, Untranslatable, Value, builtin
+from ..translate.values import (
+    LLVM_TYPES,
+    Builtin,
+    Dual,
+    Operand,
+    Untranslatable,
+    Value,
+    builtin,
+    dual,
+    slope_of,
+    undirected,
+)
 
 WIDTHS = {QUAD: "quad", 2 * QUAD: "octet"}
 """Kinds of vectors by number of lanes."""
@@ -21,6 +32,8 @@ Lines = tuple[Operand, Operand]
 @builtin
 def quad(code: Code, pointer: Operand, index: Operand) -> Value:
     """Load four floats from `index` on."""
+    if isinstance(pointer, Dual):
+        return dual(quad.lower(code, pointer.value, index), quad.lower(code, pointer.slope, index))
     return loaded(code, QUAD, code.item(pointer, index).text)
 
 
@@ -94,6 +107,12 @@ def product_of(code: Code, a: Operand, b: Operand) -> Value:
 @builtin
 def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
     """Return total + a * b of vectors, or of floats, rounded once."""
+    if any(isinstance(part, Dual) for part in (total, a, b)):
+        values, slopes = [undirected(part) for part in (total, a, b)], [slope_of(part) for part in (total, a, b)]
+        change = slopes[0] or (constant(0.0) if values[0].kind == "float" else spread.lower(code, constant(0.0)))
+        for x, y in ((slopes[1], values[2]), (values[1], slopes[2])):
+            change = plus_product.lower(code, change, x, y) if x and y else change
+        return dual(plus_product.lower(code, *values), change)
     if isinstance(total, Value) and total.kind == "float":
         return fused(code, total, *(code.converted(factor, "float") for factor in (a, b)))
     return fused(code, as_quad(total), as_quad(a), as_quad(b))
@@ -102,6 +121,8 @@ def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
 @builtin
 def sum_of(code: Code, value: Operand) -> Value:
     """Return the sum of four lanes; both halves are added first."""
+    if isinstance(value, Dual):
+        return dual(sum_of.lower(code, value.value), sum_of.lower(code, value.slope))
     vector = as_quad(value).typed
     upper = code.put_value(
         "quad", f"shufflevector {vector}, <4 x double> poison, <4 x i32> <i32 2, i32 3, i32 2, i32 3>"
@@ -121,6 +142,15 @@ def add_products(
     The sums stay in registers. Strides are those of the rows of `into`, and of k in `a` and `b`. A literal depth is
     unrolled.
     """
+    if isinstance(into, Dual):
+        for to, x, y in (
+            (into.value, undirected(a), undirected(b)),
+            (into.slope, slope_of(a), undirected(b)),
+            (into.slope, undirected(a), slope_of(b)),
+        ):
+            if x and y:
+                _change(code, 1.0, (rows, quads), (to, stride), (x, a_stride), (y, b_stride), depth)
+        return
     _change(code, 1.0, (rows, quads), (into, stride), (a, a_stride), (b, b_stride), depth)
 
 

@@ -22,11 +22,11 @@ CALL = Layout({"kernel": INT, "count": INT, "index": INTS, "number": FLOATS, "pl
 
 DIRECTION = Layout({
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS,
-    "n_turned": INT, "turned": INTS, "n_calls": INT, "calls": INTS, "values": FLOATS,
+    "n_turned": INT, "turned": INTS, "n_calls": INT, "calls": INTS, "values": FLOATS, "terms": FLOATS,
 })  # fmt: skip
 """Direction of change of the terms of one set (`stiffmbs.compile.directional`): changes of the state, with the ground's
 at their ends; bodies with shared orientation values; arguments of the kernel calls (rows of `CALL` and the address of
-the changes of the elements' numbers); derivatives of the values."""
+the changes of the elements' numbers); derivatives of the values, and the values."""
 
 EQUATIONS = Layout({
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,

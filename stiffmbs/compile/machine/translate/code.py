@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeAlias
 
-from .values import ITEMS, LLVM_TYPES, NUMBERS, Operand, Untranslatable, Value
+from .values import DUAL_KINDS, ITEMS, LLVM_TYPES, NUMBERS, Dual, Operand, Untranslatable, Value, dual
 
 if TYPE_CHECKING:
     from .unit import Unit
 
+PART_KINDS = {kind: part for part, kind in DUAL_KINDS.items()}
+"""Kinds of both parts by the kind of dual values."""
 Lines: TypeAlias = "list[str | Lines]"
 """Instructions, and lists of instructions that are filled later."""
 
@@ -20,11 +22,13 @@ class Code:
     """Instructions, variables and labels of a function.
 
     `unit`: module of the function: provides called functions and takes declarations. `reached`: true if the next
-    instruction is reachable; otherwise nothing may be written.
+    instruction is reachable; otherwise nothing may be written. `forward`: true if its arrays have dual numbers
+    (`stiffmbs.compile.machine.translate.forward`).
     """
 
-    def __init__(self, unit: Unit) -> None:
+    def __init__(self, unit: Unit, forward: bool = False) -> None:
         self.unit = unit
+        self.forward = forward
         self.reached = True
         self._entry: Lines = []
         self._lines: Lines = []
@@ -51,6 +55,20 @@ class Code:
         value = Value(kind, f"%{self.name()}")
         self._lines.append(f"{value.text} = {instruction}")
         return value
+
+    def packed(self, value: Value) -> Value:
+        """Return a value as one operand: a dual value as a structure."""
+        if not isinstance(value, Dual):
+            return value
+        first = self.put_value(value.kind, f"insertvalue {LLVM_TYPES[value.kind]} poison, {value.value.typed}, 0")
+        return self.put_value(value.kind, f"insertvalue {first.typed}, {value.slope.typed}, 1")
+
+    def unpacked(self, value: Value) -> Value:
+        """Return the value of an operand that `packed` has made."""
+        if value.kind not in PART_KINDS:
+            return value
+        parts = (self.put_value(PART_KINDS[value.kind], f"extractvalue {value.typed}, {k}") for k in (0, 1))
+        return dual(*parts)
 
     def gap(self) -> Lines:
         """Return a place for instructions written later with `within`."""
@@ -92,11 +110,18 @@ class Code:
 
     def variable(self, kind: str) -> Value:
         """Allocate a variable; LLVM promotes it to registers."""
+        if kind in PART_KINDS:
+            return dual(self.variable(PART_KINDS[kind]), self.variable(PART_KINDS[kind]))
         name = f"%{self.name('at')}"
         self._entry.append(f"{name} = alloca {LLVM_TYPES[kind]}")
         return Value(kind, name)
 
     def array(self, count: int) -> Value:
+        """Allocate numbers for the duration of the function; dual numbers if it is differentiated."""
+        numbers = self.doubles(count)
+        return dual(numbers, self.doubles(count)) if self.forward else numbers
+
+    def doubles(self, count: int) -> Value:
         """Allocate doubles for the duration of the function."""
         name = f"%{self.name('array')}"
         self._entry.append(f"{name} = alloca [{count} x double]")
@@ -105,18 +130,25 @@ class Code:
     def kept(self, name: str, count: int) -> Value:
         """Allocate doubles shared by all instructions with this name; the first is NaN initially."""
         if name not in self._kept:
-            self._kept[name] = self.array(count)
+            self._kept[name] = self.doubles(count)
             self._entry.append(f"store double 0x7FF8000000000000, ptr {self._kept[name].text}")
         return self._kept[name]
 
     def load(self, variable: Value) -> Value:
         """Load a variable."""
+        if isinstance(variable, Dual):
+            return dual(self.load(variable.value), self.load(variable.slope))
         tag = tag_of(variable.kind)
         return self.put_value(variable.kind, f"load {LLVM_TYPES[variable.kind]}, ptr {variable.text}{tag}")
 
     def store(self, variable: Value, value: Value) -> None:
         """Store a variable."""
-        self.put(f"store {self.converted(value, variable.kind).typed}, ptr {variable.text}{tag_of(variable.kind)}")
+        given = self.converted(value, variable.kind)
+        if isinstance(variable, Dual) and isinstance(given, Dual):
+            self.store(variable.value, given.value)
+            self.store(variable.slope, given.slope)
+            return
+        self.put(f"store {given.typed}, ptr {variable.text}{tag_of(variable.kind)}")
 
     def item(self, pointer: Operand, index: Operand) -> Value:
         """Return kind and address of an item."""
@@ -124,6 +156,8 @@ class Code:
             raise Untranslatable("a subscript of what is no pointer")
         kind = ITEMS[pointer.kind]
         place = self.integer(index)
+        if isinstance(pointer, Dual):
+            return Dual(kind, "", self.item(pointer.value, place), self.item(pointer.slope, place))
         return Value(
             kind, self.put_value("int", f"getelementptr {LLVM_TYPES[kind]}, {pointer.typed}, {place.typed}").text
         )
@@ -141,6 +175,10 @@ class Code:
         match value.kind, kind:
             case given, wanted if given == wanted:
                 return value
+            case "bool" | "int" | "int32" | "float", "dual":
+                return dual(self.converted(value, "float"), constant(0.0))
+            case "quad", "dual quad":
+                return dual(value, Value("quad", "zeroinitializer"))
             case "int", "float" if value.text.lstrip("-").isdigit():
                 return constant(float(value.text))
             case "bool", "float":
@@ -157,6 +195,8 @@ class Code:
 
     def truth(self, value: Operand) -> Value:
         """Return True if a number is not zero."""
+        if isinstance(value, Dual):
+            return self.truth(value.value)
         if isinstance(value, Value) and value.kind == "float":
             return self.put_value("bool", f"fcmp une {value.typed}, 0.0")
         if isinstance(value, Value) and value.kind == "bool":
@@ -191,8 +231,10 @@ def common(values: list[Value]) -> str:
     kinds = {"int" if value.kind == "int32" else value.kind for value in values}
     if len(kinds) == 1:
         return kinds.pop()
-    if kinds <= {"bool", "int", "float"}:
-        return "float" if "float" in kinds else "int"
+    if kinds <= {"bool", "int", "float", "dual"}:
+        return next((kind for kind in ("dual", "float") if kind in kinds), "int")
+    if kinds == {"quad", "dual quad"}:
+        return "dual quad"
     raise Untranslatable(f"found values of kinds {', '.join(sorted(kinds))} for one result")
 
 

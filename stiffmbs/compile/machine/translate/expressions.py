@@ -15,7 +15,20 @@ from ....reading.formula.functions import FUNCTIONS as FORMULA_FUNCTIONS
 from ....tuning import parameters_of
 from .arithmetic import compared, computed, negated, number, selected
 from .code import Code, common, constant
-from .values import POINTERS_TO, Builtin, Cell, Operand, Passed, Record, Untranslatable, Value, Wider, builtin, refuse
+from .values import (
+    POINTERS_TO,
+    Builtin,
+    Cell,
+    Operand,
+    Passed,
+    Record,
+    Untranslatable,
+    Value,
+    Wider,
+    builtin,
+    refuse,
+    undirected,
+)
 
 
 class Expressions:
@@ -210,7 +223,7 @@ def _library(symbol: str) -> Builtin:
 def absolute(code: Code, operand: Operand) -> Value:
     """Translate abs(x)."""
     x = number(operand)
-    if x.kind == "float":
+    if x.kind in ("float", "dual"):
         return code.unit.called_library(code, "llvm.fabs.f64", x)
     return selected(code, compared(code, ast.Lt(), x, Value("int", "0")), negated(code, x), code.integer(x))
 
@@ -228,20 +241,20 @@ def _extreme(comparison: ast.cmpop) -> Builtin:
 @builtin
 def to_float(code: Code, operand: Operand) -> Value:
     """Translate float(x)."""
-    return code.converted(operand, "float")
+    return code.converted(operand, common([number(operand), constant(0.0)]))
 
 
 @builtin
 def to_int(code: Code, operand: Operand) -> Value:
     """Translate int(x): truncation towards zero."""
-    x = number(operand)
+    x = undirected(number(operand))
     return code.put_value("int", f"fptosi {x.typed} to i64") if x.kind == "float" else code.integer(x)
 
 
 @builtin
 def is_finite(code: Code, operand: Operand) -> Value:
     """Translate isfinite(x)."""
-    size = code.unit.called_library(code, "llvm.fabs.f64", number(operand))
+    size = code.unit.called_library(code, "llvm.fabs.f64", undirected(number(operand)))
     return compared(code, ast.Lt(), size, Value("float", "0x7FF0000000000000"))
 
 

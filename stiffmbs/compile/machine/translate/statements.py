@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import replace
 
 from .arithmetic import computed
 from .code import Code, Lines, common
 from .expressions import Expressions
-from .values import Operand, Passed, Record, Untranslatable, Value, refuse
+from .values import Operand, Passed, Record, Untranslatable, Value, refuse, renamed
 
 
 class Statements:
@@ -78,7 +77,8 @@ class Statements:
         kind = (wanted or common(values)) if values else None
         for gap, value in self.returned:
             with self.code.within(gap):
-                self.code.put(f"ret {self.code.converted(value, kind).typed}" if value and kind else "ret void")
+                found = self.code.packed(self.code.converted(value, kind)) if value and kind else None
+                self.code.put(f"ret {found.typed}" if found else "ret void")
         return kind
 
     def _assign(self, target: ast.expr, value: Operand | None) -> None:
@@ -159,11 +159,11 @@ def parameters(names: Sequence[str], values: Sequence[Operand], expressions: Exp
     declared = []
     for name, value in zip(names, values, strict=True):
         if isinstance(value, Record):
-            fields = {field: replace(own, text=f"%{name}.{field}") for field, own in value.fields.items()}
+            fields = {field: renamed(own, f"%{name}.{field}") for field, own in value.fields.items()}
             expressions.records[name] = Record(value.name, fields)
             declared += [own.typed for own in fields.values()]
         elif isinstance(value, Value):
-            given = Value(value.kind, f"%{name}.")
+            given = renamed(value, f"%{name}.")
             expressions.set(name, given)
             declared.append(given.typed)
         elif isinstance(value, Passed):

@@ -10,10 +10,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ....errors import InputError
+from .arithmetic import sum_of_products
 from .code import Code, tags
+from .derivatives import PARTIAL_DERIVATIVES
 from .expressions import Expressions
 from .statements import Statements, parameters
-from .values import LLVM_TYPES, Operand, Passed, Record, Untranslatable, Value, Wider
+from .values import LLVM_TYPES, Dual, Operand, Passed, Record, Untranslatable, Value, Wider, dual, slope_of, undirected
 
 KINDS = {
     "int64": "int",
@@ -49,9 +52,9 @@ def assembly(entries: Sequence[Entry], text: str = "", inlined: int = 0) -> str:
     called functions are marked for LLVM's pass ``always-inline``. Raises Untranslatable if a construct is not in the
     language; names function and line.
     """
-    unit = Unit(inlined)
+    unit = Unit(inlined, text)
     for entry in entries:
-        tree = _functions(text)[entry.function.__name__] if text else _tree(entry.function)
+        tree = unit.tree(entry.function)
         values = [Value(KINDS[kind], "") for kind in entry.arguments]
         wanted = None if entry.result == "void" else KINDS[entry.result]
         unit.write(tree, entry.function.__globals__, entry.symbol, values, wanted)
@@ -59,10 +62,14 @@ def assembly(entries: Sequence[Entry], text: str = "", inlined: int = 0) -> str:
 
 
 class Unit:
-    """Translated functions, one for each combination of argument kinds."""
+    """Translated functions, one for each combination of argument kinds.
 
-    def __init__(self, inlined: int = 0) -> None:
-        self._inlined = inlined
+    A function with a dual argument is differentiated in forward mode: each of its numbers that follows from this argument has
+    its derivative, and its arrays have dual numbers.
+    """
+
+    def __init__(self, inlined: int = 0, text: str = "") -> None:
+        self._inlined, self._text = inlined, text
         self._texts: list[str] = []
         self._declared: set[str] = set()
         self._known: dict[tuple[object, ...], tuple[str, str | None]] = {}
@@ -84,22 +91,43 @@ class Unit:
                 raise Untranslatable(f"'{function.__name__}' calls itself")
             self._begun.add(key)
             symbol = f"{function.__name__}.{len(self._begun)}"
-            kind = self.write(_tree(function), function.__globals__, symbol, values, linkage="internal ")
+            kind = self.write(self.tree(function), function.__globals__, symbol, values, linkage="internal ")
             self._known[key] = symbol, kind
         symbol, kind = self._known[key]
         given = ", ".join(part.typed for value in values for part in _parts(value))
         call = f'call {LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({given})'
         if kind:
-            return code.put_value(kind, call)
+            return code.unpacked(code.put_value(kind, call))
         code.put(call)
         return None
 
     def called_library(self, code: Code, symbol: str, *values: Value) -> Value:
-        """Write the call of a floating-point function of LLVM or the C library."""
+        """Write the call of a floating-point function of LLVM or the C library; with its derivative if an argument is dual."""
+        if any(isinstance(value, Dual) for value in values):
+            return self._called_dual(code, symbol, values)
         declared = ", ".join(["double"] * len(values))
         self.declare(f'declare double @"{symbol}"({declared}) nounwind willreturn memory(none)')
         given = ", ".join(code.converted(value, "float").typed for value in values)
         return code.put_value("float", f'call double @"{symbol}"({given})')
+
+    def _called_dual(self, code: Code, symbol: str, values: Sequence[Value]) -> Value:
+        """Write the call of a function of the library and of its partial derivatives (`derivatives`)."""
+        if symbol not in PARTIAL_DERIVATIVES:
+            raise InputError(f"found '{symbol}' in an equation, expected a function with known partial derivatives")
+        given = [code.converted(undirected(value), "float") for value in values]
+        partials = (
+            (by, slope)
+            for partial, slope in zip(PARTIAL_DERIVATIVES[symbol], map(slope_of, values), strict=True)
+            if partial and slope and (by := self.called(code, partial, given))
+        )
+        return dual(self.called_library(code, symbol, *given), sum_of_products(code, partials))
+
+    def tree(self, function: Callable[..., object]) -> ast.FunctionDef:
+        """Return the syntax tree of a function, from this unit's text or from the file of its code."""
+        known = _functions(self._text)
+        if function.__name__ in known and function.__code__.co_filename.startswith("<"):
+            return known[function.__name__]
+        return _functions(Path(function.__code__.co_filename).read_text(encoding="utf-8"))[function.__name__]
 
     def write(
         self, tree: ast.FunctionDef, outside: Mapping[str, object], symbol: str, values: Sequence[Operand],
@@ -109,7 +137,7 @@ class Unit:
         wider: dict[str, str] = {}
         given_once = _given_once(tree)
         while True:
-            code = Code(self)
+            code = Code(self, forward=any(isinstance(value, Dual) for value in values))
             expressions = Expressions(code, outside, wider, given_once)
             statements = Statements(code, expressions)
             try:
@@ -158,10 +186,6 @@ def _stored(body: Sequence[ast.stmt]) -> Iterator[str]:
             yield from (node.id for node in ast.walk(target) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))  # fmt: skip
         for part in ("body", "orelse"):
             yield from _stored(getattr(statement, part, ()))
-
-
-def _tree(function: Callable[..., object]) -> ast.FunctionDef:
-    return _functions(Path(function.__code__.co_filename).read_text(encoding="utf-8"))[function.__name__]
 
 
 @cache

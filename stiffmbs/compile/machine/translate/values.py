@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 LLVM_TYPES = {
@@ -17,9 +17,17 @@ LLVM_TYPES = {
     "floats": "ptr",
     "quad": "<4 x double>",
     "octet": "<8 x double>",
+    "dual": "{ double, double }",
+    "duals": "{ ptr, ptr }",
+    "dual quad": "{ <4 x double>, <4 x double> }",
 }
-"""LLVM types of the kinds: numbers, truth values, C int, pointers to int64, int32 and float64, SIMD vectors."""
-ITEMS = {"ints": "int", "indices": "int32", "floats": "float"}
+"""LLVM types of the kinds: numbers, truth values, C int, pointers to int64, int32 and float64, SIMD vectors, dual numbers.
+
+A dual number is a number with its derivative in a direction; a pointer to dual numbers is one to numbers and one to derivatives.
+"""
+DUAL_KINDS = {"float": "dual", "floats": "duals", "quad": "dual quad"}
+"""Kinds of dual values by the kind of both parts."""
+ITEMS = {"ints": "int", "indices": "int32", "floats": "float", "duals": "dual"}
 """Item kinds of pointers."""
 NUMBERS = ("float", "int", "int32")
 """Kinds of numbers in memory, for type-based alias analysis."""
@@ -62,6 +70,31 @@ class Cell(Value):
 
 
 @dataclass(frozen=True)
+class Dual(Value):
+    """Value with its derivative in a direction."""
+
+    value: Value
+    slope: Value
+
+    @property
+    def typed(self) -> str:
+        """Both parts as operands."""
+        return f"{self.value.typed}, {self.slope.typed}"
+
+
+def dual(value: Value, slope: Value) -> Dual:
+    """Return a value with its derivative."""
+    return Dual(DUAL_KINDS[value.kind], "", value, slope)
+
+
+def renamed(value: Value, text: str) -> Value:
+    """Return a value of the same kind with another name."""
+    if isinstance(value, Dual):
+        return dual(renamed(value.value, text), renamed(value.slope, f"{text}_d"))
+    return replace(value, text=text)
+
+
+@dataclass(frozen=True)
 class Record:
     """Named values and cells; exists during translation only."""
 
@@ -92,6 +125,16 @@ class Builtin:
 def builtin(lower: Callable[..., object]) -> Any:
     """Mark a function ``lower(code, *arguments)`` that writes instructions itself."""
     return Builtin(lower)
+
+
+def undirected(value: Any) -> Value:
+    """Return a value without its derivative."""
+    return value.value if isinstance(value, Dual) else value
+
+
+def slope_of(value: Operand) -> Value | None:
+    """Return the derivative of a value; None for one without."""
+    return value.slope if isinstance(value, Dual) else None
 
 
 def refuse(node: ast.AST, what: str) -> Untranslatable:

@@ -5,7 +5,7 @@ The strain energy is U = 1/2 sum stiffness_k p_k^2 with p = y + sum_i b_i y^T Ga
 forces, two more, and two of factors of the stretches.
 """
 
-from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.access import compiled, has_derivative, shifted
 from stiffmbs.compile.machine.native.flexible.sums import (
     DAMPING,
     STIFFNESS,
@@ -63,8 +63,11 @@ def strain_rates(n, number, work):
 
 @compiled
 def add_coupling(n, number, x, place, e):
-    """Add the product of the couplings of modes by stiffness (place 0) or damping (place 1) and x to e."""
-    for k in range(int(body_view(number).coupled[0])):
+    """Add the product of the couplings of modes by stiffness (place 0) or damping (place 1) and x to e.
+
+    Couplings that are zero may have derivatives by parameters.
+    """
+    for k in range(n if has_derivative(number) else int(body_view(number).coupled[0])):
         e[k] += along(n, coupling(n, number, place, k), x)
 
 
