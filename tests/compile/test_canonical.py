@@ -1,5 +1,8 @@
-"""Sums and products of the derivation are those of SymPy, of which records and their kernels follow."""
+"""Sums and products of the derivation are those of SymPy, of which records and their kernels follow; and its cache is larger."""
 
+import os
+import subprocess
+import sys
 from itertools import product as combinations
 
 import pytest
@@ -7,6 +10,7 @@ import sympy as sp
 
 from stiffmbs.compile.symbolic.canonical import positive, product, total
 
+VARIABLE = "SYMPY_CACHE_SIZE"
 x, y, z = sp.symbols("x y z", real=True)
 PARTS = (
     x, -x, 2 * x, x * y, -3 * x * y, x + y, x - y, 2 * (x + y), sp.Mul(2, x + y, evaluate=False), x + y + 1, x**2, 1 / x, sp.sqrt(x**2 + y**2),
@@ -40,3 +44,16 @@ class Endless(sp.Function):
 def test_products_with_zero_do_not_ask_whether_functions_are_finite():
     assert product(sp.S.Zero, Endless(x), y) is sp.S.Zero
     assert product(sp.S.Zero, sp.oo, x) is sp.S.NaN
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("given", "expected"), [(None, "20000 False"), ("5000", "5000 True")])
+def test_derivations_have_a_larger_cache_of_sympy_and_leave_the_environment_as_it_is(given, expected):
+    script = (
+        "import os, stiffmbs.compile.symbolic\nfrom sympy.core import cache\n"
+        f"print(cache.{VARIABLE}, {VARIABLE!r} in os.environ)"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != VARIABLE}
+    environment |= {} if given is None else {VARIABLE: given}
+    shown = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    assert shown.stdout.strip() == expected

@@ -10,7 +10,7 @@ import numpy as np
 from stiffmbs.compile.machine import compiler, finish
 from stiffmbs.compile.machine.geometry import common_normal, ellipsoids
 from stiffmbs.compile.machine.native import evaluate, factors, rotation_vector
-from stiffmbs.compile.machine.native.beams import along, screws
+from stiffmbs.compile.machine.native.beams import screws
 from tests.decisions.common import BELOW, Reached, Record, executed, nothing, reach, reached
 from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -85,11 +85,6 @@ def thickness_of_a_core():
         pose[ellipsoids.TURN] = 1.0
         ellipsoids.ellipsoids(pose, 0.0, 1.0, m)
     return 1.0 - m[0]
-
-
-def relative_step():
-    with interpreted(along, law=lambda *_: np.ones(1)):
-        return along.step_size(0, 0, 0, 1, np.ones(1), None, np.ones(1), None)
 
 
 def terms_of(x):
@@ -176,7 +171,6 @@ DECISIONS = {
     "compile.machine.geometry.ellipsoids:CORE": thickness_of_a_core,
     "compile.machine.finish:Finishing.patience": lambda: round(sum(waits_for_drafts()), 6),
     "compile.machine.finish:Finishing.pause": lambda: waits_for_drafts()[0],
-    "compile.machine.native.beams.along:STEP": relative_step,
     "compile.machine.native.beams.screws:TERMS": lambda: terms_of(1e3),
     "compile.machine.native.beams.screws:NEGLIGIBLE": lambda: count_while(lambda x: terms_of(x) > 1, BELOW),
     "compile.machine.native.beams.section:MOST": lambda: executed("compile.machine.native.beams.section").NODES,
@@ -198,7 +192,7 @@ EXPECTED = {
     "compile.machine.geometry.common_normal:STAGES": 16, "compile.machine.geometry.common_normal:MOST_STEPS": 60,
     "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
     "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,
-    "compile.machine.geometry.ellipsoids:CORE": 0.5, "compile.machine.finish:Finishing.patience": 2.2, "compile.machine.finish:Finishing.pause": 0.2, "compile.machine.native.beams.along:STEP": 0.001,
+    "compile.machine.geometry.ellipsoids:CORE": 0.5, "compile.machine.finish:Finishing.patience": 2.2, "compile.machine.finish:Finishing.pause": 0.2,
     "compile.machine.native.beams.screws:TERMS": 17, "compile.machine.native.beams.screws:NEGLIGIBLE": 274,
     "compile.machine.native.beams.section:MOST": 690, "compile.machine.native.evaluate:FARTHEST": 27,
     "compile.machine.native.factors:KEEP_DIAGONAL": 13, "compile.machine.native.factors:TOO_SMALL": 40,

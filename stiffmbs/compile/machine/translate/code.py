@@ -23,7 +23,7 @@ class Code:
 
     `unit`: module of the function: provides called functions and takes declarations. `reached`: true if the next
     instruction is reachable; otherwise nothing may be written. `forward`: true if its arrays have dual numbers
-    (`stiffmbs.compile.machine.translate.forward`).
+    (`stiffmbs.compile.machine.translate.unit.Unit`).
     """
 
     def __init__(self, unit: Unit, forward: bool = False) -> None:
