@@ -135,22 +135,34 @@ class Elastic(WithinHalfATurn, Force):
         return e.rate(e.i.point) - velocity(e, e.j, e.i.point)
 
     @classmethod
+    def velocities(cls, e: Symbolic) -> tuple[Matrix, Matrix]:
+        """Return the velocity v and the angular velocity w of i relative to j, in ground axes."""
+        return e.named(cls.drift(e)), e.named(e.i.omega - e.j.omega)
+
+    @classmethod
+    def components(cls, e: Symbolic) -> list[Expr]:
+        """Return those of (v, w) along the axes of the deformation."""
+        v, w = cls.velocities(e)
+        return e.named([*(v.dot(axis) for axis in cls.frame(e)), *(w.dot(axis) for axis in e.j.axes)])  # type: ignore[no-any-return]
+
+    @classmethod
+    def load(cls, e: Symbolic) -> list[Expr]:
+        """Return force and torque on i along the axes of the deformation: the elastic part less C (v, w)."""
+        rates = cls.components(e)
+        elastic, viscous = e.named(cls.elastic(e)), times(cls.viscosity(e), rates)
+        acting = [*elastic[:3], *cls.turned(e).torque(elastic[3:])]
+        return e.named([f - g for f, g in zip(acting, viscous, strict=True)])  # type: ignore[no-any-return]
+
+    @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """Return the force on the displacement of i relative to j and the torque on its rotation, in ground axes."""
-        v, w = e.named(cls.drift(e)), e.named(e.i.omega - e.j.omega)
-        along = [effort for effort, _ in cls.condensed_powers(e)]
-        force, torque = along_axes(along[:3], cls.frame(e)), along_axes(along[3:], e.j.axes)
+        """Return the force on the velocity of i relative to j and the torque on its rotation, in ground axes."""
+        (v, w), load = cls.velocities(e), cls.load(e)
+        force, torque = along_axes(load[:3], cls.frame(e)), along_axes(load[3:], e.j.axes)
         return [*zip(e.named(force), v, strict=True), *zip(e.named(torque), w, strict=True)]
 
     @classmethod
     def condensed_powers(cls, e: Symbolic) -> Pairs:
-        """Return the components of force and torque along the axes of the deformation, on those of the velocities."""
-        v, w = e.named(cls.drift(e)), e.named(e.i.omega - e.j.omega)
-        rates = e.named([*(v.dot(axis) for axis in cls.frame(e)), *(w.dot(axis) for axis in e.j.axes)])
-        elastic, viscous = e.named(cls.elastic(e)), times(cls.viscosity(e), rates)
-        acting = [*elastic[:3], *cls.turned(e).torque(elastic[3:])]
-        along = e.named([f - g for f, g in zip(acting, viscous, strict=True)])
-        return list(zip(along, rates, strict=True))
+        return list(zip(cls.load(e), cls.components(e), strict=True))
 
     @classmethod
     def limits(cls, e: Symbolic) -> list[Expr]:
