@@ -36,10 +36,11 @@ def page(kinds: dict[str, NoteKind]) -> Iterator[str]:
     for severity in (Severity.DOUBT, Severity.WARNING, Severity.REMARK):
         title = f"{severity.name.capitalize()}s"
         yield from (title, "-" * len(title), "", f"{severity.value.capitalize()}.", "")
-        yield from (".. list-table::", "   :header-rows: 1", "   :widths: 20 55 25", "")
-        yield from row("kind", "note", "what to do")
-        for kind in sorted({kind.name: kind for kind in kinds.values() if kind.severity is severity}.items()):
-            yield from row(f"``{kind[0]}``", *words(kind[1]))
+        yield from (".. list-table::", "   :header-rows: 1", "   :widths: 17 45 23 15", "")
+        yield from row("kind", "note", "what to do", "module")
+        found = {kind.name: (kind, place) for place, kind in kinds.items() if kind.severity is severity}
+        for name, (kind, place) in sorted(found.items()):
+            yield from row(f"``{name}``", *words(kind), f"``{place.split('.', 1)[1].rpartition('.')[0]}``")
         yield ""
     yield from (
         "Early ends",

@@ -236,9 +236,9 @@ class Joint(Element):
     channels : tuple of str
         Names of the values that `measured` returns: the free coordinates with their rates and accelerations.
     transmits : tuple of str
-        Reaction components in space: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about
-        them at the point of marker i. Components along other directions, such as the torque of a universal joint, are
-        omitted. Redundancy advice proposes such joints in place of joints that transmit more than necessary.
+        Reaction components in space along the axes of marker j: forces ``fx fy fz``, and torques ``tx ty tz`` at the
+        point of marker i; the channels of these names are along the ground axes. Components along other directions,
+        such as the torque of a universal joint, are omitted. Redundancy advice proposes such joints in place of joints that transmit more than necessary.
     elastic : str
         Kind of the compliant force that can replace the joint.
     keeps_in_plane : bool

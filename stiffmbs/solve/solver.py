@@ -1,4 +1,4 @@
-"""Solver interface: a function, and declared traits, so that no caller depends on a solver's name."""
+"""Solver interface: a function, and declared traits, on which callers depend in place of a solver's name."""
 
 from __future__ import annotations
 

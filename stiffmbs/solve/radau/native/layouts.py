@@ -24,7 +24,7 @@ RADAU = Layout({
     "y": FLOATS, "yp": FLOATS, "y_stage": FLOATS, "yp_stage": FLOATS, "z": FLOATS, "r": FLOATS, "d": FLOATS, "past": FLOATS, "y_past": FLOATS, "error": FLOATS, "weight": FLOATS,
     "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "decaying": INT_CELL,
-    "h_factored": FLOAT_CELL, "stages_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "ahead": INT_CELL, "error_size": FLOAT_CELL, "damped": INT_CELL, "left": FLOAT_CELL, "suggested": FLOAT_CELL,
+    "h_factored": FLOAT_CELL, "stages_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "attempts": INT_CELL, "renewed": INT_CELL, "ahead": INT_CELL, "error_size": FLOAT_CELL, "damped": INT_CELL, "left": FLOAT_CELL, "suggested": FLOAT_CELL,
     "corrections": FLOATS, "apart": FLOAT_CELL, "n_corrections": INT_CELL, "suffice": INT_CELL,
     "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
     "has_kinks": INT,

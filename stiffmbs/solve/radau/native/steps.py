@@ -192,7 +192,7 @@ def _begun(x):
         set_weights(x)
     _choose_unknowns(x)
     x.rejected = 0
-    x.failures = 0
+    x.attempts = 0
     x.ahead = 0
     x.renewed = 1 if x.h_factored == 0.0 or x.rate_kept == 0 else 0
     return min(x.h, x.longest) if x.longest > 0.0 else x.h
@@ -301,10 +301,11 @@ def step(x):
         untested = h > x.keep_high * tested
         if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
-        x.failures += 1
+        x.attempts += 1
         if not x.ahead or predicted(x, h):  # without a prediction, a step goes on from the iterates that failed
             extrapolated(x, c, h)
         if not _has_matrices(x, c, h):
+            x.step_failures += 1
             h *= x.after_failure
             continue
         outcome = iterated(x, c, x.t, h)
@@ -313,6 +314,7 @@ def step(x):
             continue
         error = error_of_step(x, c, h, untested)
         if not isfinite(error):
+            x.step_failures += 1
             h *= x.after_failure
             continue
         if error < 1.0:
@@ -325,7 +327,7 @@ def step(x):
             continue
         x.rejected = 1
         x.error_failures += 1
-        shorter = h * (x.least_factor if first and x.failures == 1 else _growth(x, c, error))
+        shorter = h * (x.least_factor if first and x.attempts == 1 else _growth(x, c, error))
         h = max(shorter, tested) if untested else shorter
         x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
     x.error_size = error
