@@ -15,7 +15,7 @@ STEP = 2e-5  # tyres have terms that change within 1e-3
 
 
 def random_numbers(state, rng, model):
-    """Changes of all numbers but places of tables, addresses of functions, and points of tables, which keep their values."""
+    """Changes of all numbers but places, lengths and ends of tables, and addresses of functions."""
     changes = []
     for group in state.system.groups:
         change = np.where(np.abs(group.numbers) < 1e6, rng.uniform(-1, 1, len(group.numbers)), 0.0)
@@ -25,8 +25,7 @@ def random_numbers(state, rng, model):
             for at, table in data.tables:
                 begin = first + int(flat[at])
                 change[first + at] = 0.0
-                points = slice(begin, begin + 2 + int(table[0]))
-                change[points] = 0.0
+                change[begin : begin + 2] = 0.0
         changes.append(change)
     return changes
 

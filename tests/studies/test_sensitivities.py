@@ -282,3 +282,41 @@ run: {duration: 1 s, rtol: 1e-9}
     double, product = (sensitivities(scene, ["F", "m"], f"final({name})") for name in ("double", "product"))
     assert double.to == pytest.approx({"F": 2 / 4, "m": -2 * 3 / 8}, rel=1e-7)
     assert product.to == pytest.approx({"F": 0.5 + 3 / 4 + 3 / 4, "m": -9 / 8}, rel=1e-7)
+
+
+TABLES = """
+parameters: {{p: {p!r}}}
+bodies: {{b: {{mass: 2, inertia: 1, position: [0.3, 0]}}, c: {{mass: 1, inertia: 1, position: [1.3, 0]}}}}
+joints:
+  first: {{type: prismatic, i: b, j: ground}}
+  second: {{type: prismatic, i: c, j: ground}}
+  drive: {{type: drive, joint: first, {law}: f(t)}}
+forces:
+  spring: {{type: spring_damper, i: b, j: c, stiffness: 50, damping: 2, free_length: 1}}
+  push: {{type: force, i: c, force: ["g(c.x)*cos(c.vx) + h(2*t)", 0]}}
+tables:
+  f: {{table: [[0, 0.3], [p, 0.5], [1, 0.3], [2, 0.4]], {form}}}
+  g: {{table: [[-1, 3], [p, 0.1], [1.2, -0.3], [2*p, -1], [4, -8]], {form}}}
+  h: {{table: [[0, 0], [0.2, 5], [p, 0]], {form}, beyond: repeat}}
+run: {{duration: 1.7, rtol: 1e-9, points: 101}}
+"""
+
+
+@pytest.mark.long
+@pytest.mark.sampled(4)
+@BY_BOTH
+@pytest.mark.parametrize("law", ["position", "velocity"])
+@pytest.mark.parametrize("form", ["lines: true", "spline: true", "akima: true"])
+def test_points_of_tables_move(form, law, solver):
+    """Tables of time, periodic too, and of a position: against differences of runs.  The points of drives are jumps of velocity."""
+
+    def ends(p):
+        found = stiffmbs.run(stiffmbs.read_scene(TABLES.format(p=p, law=law, form=form)), rtol=1e-11, solver=solver)
+        return np.array([found[name][-1] for name in ("c.x", "drive.fx")])
+
+    p, h = 0.75, 1e-4
+    scene = stiffmbs.read_scene(TABLES.format(p=p, law=law, form=form))
+    differences = (8 * (ends(p + h) - ends(p - h)) - (ends(p + 2 * h) - ends(p - 2 * h))) / (12 * h)
+    for of, expected in zip(("final(c.x)", "final(drive.fx)"), differences, strict=True):
+        found = sensitivities(scene, ["p"], of, solver=solver)
+        assert found.to["p"] == pytest.approx(expected, rel=2e-5, abs=2e-6)

@@ -29,8 +29,8 @@ EVERYTHING = (NUMBER, *STATE)
 class Numbers:
     """Derivatives of a system's numbers with respect to a parameter.
 
-    `of_groups`: for each group of elements the derivatives of its numbers; those of table arguments are zero.
-    `moved`: groups with numbers that change. `mass` of shape (n_u,).
+    `of_groups`: for each group of elements the derivatives of its numbers. `moved`: groups with numbers that change.
+    `mass` of shape (n_u,).
     """
 
     of_groups: tuple[np.ndarray, ...]

@@ -105,8 +105,6 @@ class SetUp:
             ]
             mass = self.derivative([other.mass for other in self._systems])
         moved = frozenset(g for g, numbers in enumerate(of_groups) if numbers.any())
-        for g, numbers in enumerate(of_groups):
-            self._refuse_moved_points(g, numbers)
         return Numbers(tuple(map(np.ascontiguousarray, of_groups)), moved, mass)
 
     def _numbers_of_changed(self) -> list[np.ndarray]:
@@ -141,22 +139,6 @@ class SetUp:
         raise InputError(
             f"to: found that '{self.parameter.name}' changes the equations of '{name}', expected a parameter that changes numbers"
         )
-
-    def _refuse_moved_points(self, g: int, numbers: np.ndarray) -> None:
-        """Raise InputError if points of tables move along their argument."""
-        group = self._job.dynamics.system.groups[g]
-        if not any(_has_table(shape) for _, shape in group.kind.fields):
-            return
-        for e, name in enumerate(group.names):
-            _, data = sorted_out(name, group.elements[e], self._job.data)
-            first, flat = int(group.index[e, 2 * group.kind.n_bodies]), data.flat()
-            for at, table in data.tables:
-                points = slice(first + int(flat[at]), first + int(flat[at]) + 2 + int(table[0]))
-                if numbers[points].any():
-                    raise InputError(
-                        f"to: found that '{self.parameter.name}' moves points of a table of '{name}' along its argument, "
-                        "expected one that changes its values"
-                    )
 
     @cached_property
     def start(self) -> tuple[np.ndarray, np.ndarray]:
@@ -257,13 +239,3 @@ def _same_structure(a: System, b: System) -> bool:
             for x, y in zip(a.groups, b.groups, strict=True)
         )
     )  # fmt: skip
-
-
-def _has_table(shape: object) -> bool:
-    if not isinstance(shape, tuple):
-        return False
-    if shape[:1] == ("table",) or (
-        shape[:1] == ("formula",) and len(shape) > 2 and shape[2][2]
-    ):  # tyres have a field `formula`
-        return True
-    return any(map(_has_table, shape))
