@@ -29,7 +29,7 @@ class RelativeRotation:
 
     The quaternion follows the bodies' motion without sign changes, so the angle is smooth past half a turn, up to a
     full turn. `scalar`: h, the cosine of half the angle. `vector`: v, the sine of half the angle along the rotation
-    axis, in the first marker's axes (and the second's).
+    axis, in the first marker's axes (and the second's). In elements, the first marker is j, the second i.
     """
 
     scalar: sp.Expr
@@ -64,7 +64,8 @@ class RelativeRotation:
 class ShortestRotation:
     """Shortest rotation from an axis of one marker to that of another, independent of the rotation about the axis.
 
-    `axis`: 0, 1 or 2 for x, y, z. `direction`: the second marker's axis in the first marker's axes.
+    `axis`: 0, 1 or 2 for x, y, z. `direction`: the second marker's axis in the first marker's axes. In elements, the
+    first marker is j, the second i.
     """
 
     axis: int
