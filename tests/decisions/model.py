@@ -190,7 +190,7 @@ def farthest_hard_point():
 def deepest_parts():
     def accepts(depth):
         definitions = Record(use=lambda *_: (Record(part="a"), {}))
-        found = Record(definitions=definitions, words={}, _add=nothing)
+        found = Record(definitions=definitions, words={}, later=changes.Later(), _add=nothing)
         with patch.multiple(instances, repeat_entries=lambda _where, used, _: used, _check_name=nothing):
             return not refused(lambda: instances.Instances.read(found, {"a": {}}, {}, None, depth))
 
