@@ -11,7 +11,7 @@ from stiffmbs.errors import InputError
 from stiffmbs.model import flexible, mounted_tyres, tuning
 from stiffmbs.model.beams import axis, discretise, drawn_section, interpolation, rigid_motion, section
 from stiffmbs.model.files import expand, scenes_read_before
-from stiffmbs.model.parts import frame, hard_points, instances
+from stiffmbs.model.parts import changes, frame, hard_points, instances
 from stiffmbs.model.paths import curves, lanes
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import settings as grids
