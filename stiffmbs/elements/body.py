@@ -94,6 +94,10 @@ class LineBody(Described):
         """Add the bodies and elements to a model built in Python, and return a handle."""
         raise NotImplementedError
 
+    def allows(self, old: object, new: object) -> bool:
+        """Return True if one of its bodies or elements in a model may be replaced alone."""
+        return True
+
 
 class BodyHandle(Handle):
     """Reference to a body of a planar model, returned by `Model.add` (`stiffmbs.reading.handle.Handle`).

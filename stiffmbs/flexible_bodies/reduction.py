@@ -336,7 +336,7 @@ def _moments(model: FiniteElements, centre: np.ndarray, modes: np.ndarray) -> tu
     if model.shell is not None:  # points next to the middle surface move by rotations
         directors = model.shell.directors
         turned = (directors.turned @ modes).reshape(len(directors.places), DISPLACEMENTS * n)
-        weighted = (directors.moments @ turned).reshape(-1, DISPLACEMENTS, n)
+        weighted = (directors.moments @ turned).reshape(len(directors.places), DISPLACEMENTS, n)
         moments += np.einsum("ia,ibk->kab", directors.places, weighted, optimize=True)
-        pairs += np.einsum("ial,ibk->lkab", turned.reshape(-1, DISPLACEMENTS, n), weighted, optimize=True)
+        pairs += np.einsum("ial,ibk->lkab", turned.reshape(*weighted.shape), weighted, optimize=True)
     return by_mass.sum(axis=0).T, moments, pairs

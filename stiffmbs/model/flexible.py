@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 
 FRAME, MODES = "frame", "modes"
+DRAWN = ("markers", "geometry")
+"""Fields of its bodies in a model that may be changed."""
 SHARE = 1e-3
 """Mass of the body of an interface, relative to that of the flexible body, which has less by it."""
 SMALL = 1e-3
@@ -97,6 +99,13 @@ class FlexibleBody(description.FlexibleBody, LineBody):
         for full, part in (*bodies.items(), *joints.items()):
             model.add(full, part)
         return FlexibleHandle(name, {each: model.handle_type(f"{name}.{each}", model) for each in self.interfaces})
+
+    def allows(self, old: object, new: object) -> bool:
+        """Return True for a body with other markers or shapes; all other fields follow from the finite elements."""
+        if not isinstance(old, Body) or type(old) is not type(new):
+            return False
+        own = {name: getattr(old, name) for name in DRAWN}
+        return bool(old == new.model_copy(update=own))  # type: ignore[attr-defined]
 
 
 def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
