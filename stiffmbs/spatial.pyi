@@ -420,6 +420,7 @@ class FlexibleBody(_FlexibleBody):
         thickness: given.Number | Mapping[str, object] | None = ...,
         thicknesses: Mapping[str, given.Number] | None = ...,
         interfaces: Mapping[str, Mapping[str, object]] = ...,
+        surfaces: Mapping[str, Mapping[str, object]] = ...,
         modes: int | Mapping[str, object] = ...,
         mass: given.Number | None = ...,
         stiffening: bool | Literal["auto"] = ...,

@@ -179,11 +179,29 @@ def with_same_modes(scenes: Sequence[AnyScene], reference: ModelData) -> list[An
     for scene in scenes:
         bodies, joints = dict(scene.bodies), dict(scene.joints)
         for name in differing:
+            if _is_loaded(scene, name) and not _have_same_modes(known[name], described_bodies(scene.bodies)[name]):
+                raise InputError(
+                    f"bodies.{name}: found a surface load on modes that change with the value, expected a value on which they do not "
+                    "depend, or differences of runs in place of a sensitivity"
+                )
             parts = _parts_with_modes(name, scene.bodies[f"{name}.{FRAME}"], reference.bodies[f"{name}.{FRAME}"])
             bodies |= dict(parts.bodies())
             joints |= dict(parts.joints())
         found.append(scene.model_copy(update={"bodies": bodies, "joints": joints}) if differing else scene)
     return found
+
+
+def _is_loaded(scene: ModelData, name: str) -> bool:
+    """Return True if forces act on the modal coordinates of a flexible body."""
+    modes = scene.bodies[f"{name}.{FRAME}"].modes
+    return any(marker.body in modes for force in scene.forces.values() for _, marker in force.markers())
+
+
+def _have_same_modes(one: FlexibleBody, other: FlexibleBody) -> bool:
+    """Return True if the reductions of two bodies have the same shapes: all but Young's modulus, density and damping are equal."""
+    reduced = set(description.FlexibleBody.model_fields)
+    first, second = (each.scaled().model_dump(include=reduced) for each in (one, other))
+    return first == second
 
 
 def _parts_with_modes(name: str, frame: FloatingFrame, like: FloatingFrame) -> _Parts:

@@ -127,6 +127,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             raise InputError(
                 f"{name}: found {part!r} in place of {old.part!r}, expected a beam for a beam, a flexible body for a flexible body"
             )
+        self._check_loads(name)
         before = [(section, [*section]) for section in self._sections()]
 
         def change() -> Any:
@@ -144,6 +145,14 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             del self._owners[key]
             for section in self._sections():
                 section.pop(key, None)
+
+    def _check_loads(self, name: str) -> None:
+        """Refuse the change of a flexible body on which loads act whose forces are those of its modes."""
+        load = next((other for other, line in self._lines.items() if line.part.depends_on() == name), None)
+        if load is not None:
+            raise InputError(
+                f"{name}: found the load '{load}' on it, expected that to be removed first and added again"
+            )
 
     def _check_owner(self, name: str, part: object) -> None:
         """Refuse the change of a body or element that belongs to a beam or a flexible body. `part`: None if it is removed."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
-from ..elements.body import is_flexible
+from ..elements.body import is_flexible, is_surface_load
 from ..elements.roads.field import read_roads
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
@@ -233,7 +233,7 @@ def _validated(
         context["roads"] = read_roads(raw.get("roads"), context)
         raw = _with_flexible_bodies(raw, context)
         raw, context = with_parts(raw, _family(raw), context, later)
-        raw = _with_vehicle(raw, context)
+        raw = _with_vehicle(_with_surface_loads(raw, context), context)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
@@ -263,6 +263,16 @@ def _with_flexible_bodies(raw: dict[str, object], context: Mapping[str, object])
     from .flexible import with_flexible_bodies
 
     return with_flexible_bodies(raw, context)
+
+
+def _with_surface_loads(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:
+    """Return a scene with loads on surfaces of flexible bodies expanded; their module is imported only for these."""
+    forces = raw.get("forces")
+    if not isinstance(forces, dict) or not any(is_surface_load(entry) for entry in forces.values()):
+        return raw
+    from .surface_loads import with_surface_loads
+
+    return with_surface_loads(raw, context)
 
 
 def _with_path(raw: dict[str, object], parameters: Mapping[str, Quantity]) -> dict[str, object]:

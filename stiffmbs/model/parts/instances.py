@@ -6,10 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...elements.body import check_names, is_flexible
+from ...elements.body import check_names, is_flexible, is_surface_load
 from ...errors import InputError
 from ...reading.fields import located, mapping
 from ...reading.files.files_read import Context
+from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import Content
 from ...reading.names import MOUNT
 from ...reading.units.units import Quantity
@@ -148,6 +149,12 @@ class Instances:
             repeated = set(entries) - set(mapping(definition[section], section)) if isinstance(entries, dict) else set()
             self.later.set(f"parts.{use.part}.{section}", entries, repeated, vectors)
             self.later.set(f"{section}.{name}", entries, repeated, vectors)
+        for each, entry in mapping(sections.get("forces") or {}, f"parts.{use.part}.forces").items():
+            if is_surface_load(entry):
+                raise InputError(
+                    f"parts.{use.part}.forces.{each}: found a surface load in a part, expected it among the forces of the scene, "
+                    f"with the name that the body has there: {name}.{quoted(str(entry.get('body')))}"
+                )
         sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.", f"{name}.")
         try:
             sections, flexible, made = self._without_flexible(sections, f"parts.{use.part}.bodies", own)
