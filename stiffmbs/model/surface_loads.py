@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from ..elements.body import LineBody, is_surface_load
 from ..errors import InputError, prefixed
@@ -16,6 +16,7 @@ from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import located
 from ..reading.files.quoted import quoted
 from ..reading.files.yaml_text import Content
+from ..reading.handle import Handles
 from .flexible import BY_BODY, FRAME, MODES, described_bodies
 
 Load = float | str
@@ -37,6 +38,11 @@ class SurfaceLoad(LineBody):
     traction: tuple[Load, Load, Load] | None = Field(
         None, description="force per area along the axes of the body's mesh, Pa: numbers or formulas"
     )
+
+    @field_validator("body", mode="before")
+    @classmethod
+    def _name_of_a_handle(cls, found: object) -> object:
+        return found.name if isinstance(found, Handles) else found
 
     @model_validator(mode="after")
     def _any_load(self) -> Self:

@@ -65,7 +65,7 @@ def discretised(place=0.5):
 
     with patch.multiple(
         discretise, _intervals=lambda *_: [(beam.pieces()[0], 0.0, 0.0, 1.0)], _Interval=interval,
-        Divided=lambda _total, _counts, tolerance, _names: tolerance, Line=lambda nodes, _, tolerance: (nodes, tolerance),
+        Divided=lambda _total, _counts, tolerance, _names: tolerance, Line=lambda nodes, _, tolerance, _spans: (nodes, tolerance),
     ):  # fmt: skip
         return discretise.discretise(beam)
 

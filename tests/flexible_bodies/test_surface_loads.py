@@ -274,7 +274,7 @@ def test_a_load_in_a_model_built_in_python(tmp_path, monkeypatch):
     model = spatial.Model()
     bar = model.add("bar", spatial.FlexibleBody(**described))
     model.add("foot", spatial.Fixed(i=bar.root, j={"body": "ground", "point": [0, WIDTH / 2, HEIGHT / 2]}))
-    load = spatial.SurfaceLoad(body="bar", surface="top", pressure="3 kPa")
+    load = spatial.SurfaceLoad(body=bar, surface="top", pressure="3 kPa")
     model.add("top", load)
     found, expected = (stiffmbs.run(each, duration=1e-3, points=3) for each in (model, of_scene))
     np.testing.assert_allclose(found["bar.tip.z"], expected["bar.tip.z"], rtol=1e-9)
