@@ -124,6 +124,7 @@ OTHERS = (
     "BeamBody",
     "Body",
     "FlexibleBody",
+    "SurfaceLoad",
     "LinearSystem",
     "Marker",
     "PID",
@@ -173,6 +174,8 @@ def _given(annotation: Any, metadata: Any = ()) -> str:
     if origin in (Union, types.UnionType):
         if {Formula, Table} <= set(parts):
             return "given.Curve" + (" | None" if type(None) in parts else "")
+        if {float, str} <= set(parts):
+            return "given.Law" + (" | None" if type(None) in parts else "")
         return " | ".join(dict.fromkeys(_given(part) for part in parts))
     if origin is tuple:
         return _of_many([_given(part) for part in parts if part is not Ellipsis])

@@ -15,7 +15,7 @@ from .loaded_later import elements_of, loaded
 _KINDS = ".elements.spatial.spatial_kinds"
 _LATER = {
     "BeamBody": ".model.beams.spatial", "Body": ".elements.spatial.body", "Force": ".elements.element", "Joint": ".elements.element", "Marker": ".elements.spatial.marker",
-    "FlexibleBody": ".model.flexible", "Model": ".model.spatial_model", "in_space": ".analyses.in_space",
+    "FlexibleBody": ".model.flexible", "SurfaceLoad": ".model.surface_loads", "Model": ".model.spatial_model", "in_space": ".analyses.in_space",
 }  # fmt: skip
 
 

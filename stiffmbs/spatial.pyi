@@ -59,6 +59,7 @@ from stiffmbs.elements.spatial.joints.universal import Universal as _Universal
 from stiffmbs.elements.spatial.marker import Marker as _Marker
 from stiffmbs.model.beams.spatial import BeamBody as _BeamBody
 from stiffmbs.model.flexible import FlexibleBody as _FlexibleBody
+from stiffmbs.model.surface_loads import SurfaceLoad as _SurfaceLoad
 
 from .analyses.in_space import in_space as in_space
 from .elements.element import Force as Force
@@ -420,6 +421,7 @@ class FlexibleBody(_FlexibleBody):
         thickness: given.Number | Mapping[str, object] | None = ...,
         thicknesses: Mapping[str, given.Number] | None = ...,
         interfaces: Mapping[str, Mapping[str, object]] = ...,
+        surfaces: Mapping[str, Mapping[str, object]] = ...,
         modes: int | Mapping[str, object] = ...,
         mass: given.Number | None = ...,
         stiffening: bool | Literal["auto"] = ...,
@@ -731,6 +733,12 @@ class SpringDamper(_SpringDamper):
         spring_law: given.Curve | None = ...,
         damper_law: given.Curve | None = ...,
         type: Literal["spring_damper"] = ...,
+    ) -> None: ...
+
+class SurfaceLoad(_SurfaceLoad):
+    """Pressure or traction on a surface of a flexible body: an entry of the forces of a scene."""
+    def __init__(
+        self, *, body: str | _Handle, surface: str, pressure: given.Law | None = ..., traction: given.Laws | None = ...
     ) -> None: ...
 
 class TangentToCurve(_TangentToCurve):

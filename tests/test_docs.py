@@ -21,8 +21,8 @@ from stiffmbs.commands.main import main
 from stiffmbs.model import model
 from stiffmbs.model import spatial_model as spatial_model
 from stiffmbs.model.files.expand import repeat_entries
+from stiffmbs.model.parts.changes import REPEATED
 from stiffmbs.model.planar_scene import PlanarScene
-from stiffmbs.model.read_scene import SECTIONS
 
 HERE = Path(__file__).parent.parent
 GENERATED = HERE / "docs" / "gallery"
@@ -95,7 +95,7 @@ def read_yaml(text):
         stiffmbs.read_scene(text)
         found = {}
     for key, value in found.items():
-        parts = repeat_entries(key, value, {}) if key in SECTIONS else value
+        parts = repeat_entries(key, value, {}) if key in REPEATED else value
         TypeAdapter(PlanarScene.model_fields[key].annotation).validate_python(parts)
     if name := re.match(r"# (\w+\.yaml)\n", text):
         Path(name[1]).write_text(text, encoding="utf-8")

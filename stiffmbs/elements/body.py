@@ -28,6 +28,14 @@ AnyBody: TypeAlias = "Body | SpatialBody"
 FLEXIBLE = "flexible"
 """Type of a flexible body in a scene."""
 
+SURFACE_LOAD = "surface_load"
+"""Type of a load on a surface of a flexible body in a scene."""
+
+
+def is_surface_load(entry: object) -> bool:
+    """Return True for an entry of such a load, as it is written in a scene."""
+    return isinstance(entry, dict) and entry.get("type") == SURFACE_LOAD
+
 
 def is_flexible(entry: object) -> bool:
     """Return True for an entry of a flexible body, as it is written in a scene."""
@@ -88,11 +96,19 @@ class Body(Described):
 
 
 class LineBody(Described):
-    """Base of bodies that consist of several bodies and elements between them, such as beams and flexible bodies."""
+    """Base of entries that consist of several bodies and elements, such as beams and flexible bodies."""
 
     def add_to(self, model: object, name: str) -> object:
         """Add the bodies and elements to a model built in Python, and return a handle."""
         raise NotImplementedError
+
+    def depends_on(self) -> str:
+        """Return the name of another one whose numbers it contains; an empty text for none."""
+        return ""
+
+    def allows(self, old: object, new: object) -> bool:
+        """Return True if one of its bodies or elements in a model may be replaced alone."""
+        return True
 
 
 class BodyHandle(Handle):

@@ -59,7 +59,7 @@ class MeshShape(Shape):
     """Base of planar and spatial meshes."""
 
     type: Literal["mesh"] = "mesh"
-    file: str = Field(description="a file .stl or .obj, relative to the folder of the scene")
+    file: str = Field(description="a file .stl or .obj, relative to the folder of the file that names it")
     scale: Scale = Field(
         (1.0, 1.0, 1.0), description="unit of the file in metres, 1e-3 for mm: one number, or along x, y and z"
     )

@@ -25,7 +25,7 @@ from ..reading.fields import Described, sentence
 from ..reading.files.quoted import written
 from ..reading.files.text_file import file_content
 from ..reading.units import si
-from .areas import nodal_areas
+from .areas import nodal_areas, unit_loads
 from .finite_elements import PRECISION, FiniteElements
 from .interfaces import AVERAGE, POINT, Interface
 from .mirrored import mirrored
@@ -112,8 +112,8 @@ class Plane(Described):
     within: si.PositiveLength | None = Field(None, description="largest distance of a node, m")
 
 
-class InterfaceOfNodes(Described):
-    """Interface: nodes of the body that move with a marker."""
+class SelectedNodes(Described):
+    """Nodes of a finite element model, selected by exactly one of the keys."""
 
     nodes: tuple[int, ...] | None = Field(
         None, description="node numbers of the file of nodes; for a mesh or an archive, from 0 in its order"
@@ -121,6 +121,48 @@ class InterfaceOfNodes(Described):
     group: str | None = Field(None, description="named group of nodes of the file")
     sphere: Sphere | None = Field(None, description="all nodes within a sphere")
     plane: Plane | None = Field(None, description="all nodes on a plane")
+
+    @model_validator(mode="after")
+    def _one_selection(self) -> Self:
+        given = [name for name in ("nodes", "group", "sphere", "plane") if getattr(self, name) is not None]
+        if len(given) != 1:
+            found = " and ".join(given) or "none"
+            raise ValueError(f"found {found} of nodes, group, sphere and plane, expected exactly one of them")
+        return self
+
+    def selected(self, where: str, model: FiniteElements) -> np.ndarray:
+        """Return the numbers of the nodes of a model, from 0 and in increasing order. Raises InputError."""
+        return np.unique(np.asarray(self._selected(where, model), dtype=np.int64))
+
+    def _selected(self, where: str, model: FiniteElements) -> object:
+        if self.group is not None:
+            if self.group not in model.groups:
+                listed = ", ".join(model.groups) or "none"
+                near = did_you_mean(self.group, model.groups)
+                raise InputError(
+                    f"{where}.group: found no group '{self.group}'{near}, expected one of the file ({listed})"
+                )
+            return model.groups[self.group]
+        if self.sphere is not None:
+            return np.flatnonzero(np.linalg.norm(model.nodes - self.sphere.center, axis=1) <= self.sphere.radius)
+        if self.plane is not None:
+            within = self.plane.within or PRECISION * np.ptp(model.nodes, axis=0).max()
+            across = np.array(self.plane.normal) / np.linalg.norm(self.plane.normal)
+            return np.flatnonzero(np.abs((model.nodes - self.plane.point) @ across) <= within)
+        assert self.nodes is not None
+        numbers = np.arange(len(model.nodes)) if model.numbers is None else model.numbers
+        unknown = np.setdiff1d(self.nodes, numbers)
+        if len(unknown):
+            raise InputError(
+                f"{where}.nodes: found node {unknown[0]}, expected {numbers[0]} to {numbers[-1]}"
+                f"{'' if len(numbers) > numbers[-1] - numbers[0] else ' (numbers of the file)'}"
+            )
+        return np.searchsorted(numbers, self.nodes)
+
+
+class InterfaceOfNodes(SelectedNodes):
+    """Interface: nodes of the body that move with a marker."""
+
     type: Literal["rigid", "average", "point"] = Field(
         "rigid",
         description="rigid: the nodes are a rigid body (RBE2); average: their mean motion (RBE3); point: one node",
@@ -133,18 +175,14 @@ class InterfaceOfNodes(Described):
     )
 
     @model_validator(mode="after")
-    def _one_selection(self) -> Self:
-        given = [name for name in ("nodes", "group", "sphere", "plane") if getattr(self, name) is not None]
-        if len(given) != 1:
-            found = " and ".join(given) or "none"
-            raise ValueError(f"found {found} of nodes, group, sphere and plane, expected exactly one of them")
+    def _of_an_average(self) -> Self:
         if self.weights == "area" and self.type != AVERAGE:
             raise ValueError(f"found weights: area with type: {self.type}, expected them with type: average")
         return self
 
     def on(self, name: str, model: FiniteElements) -> Interface:
         """Return the interface on a model. Raises InputError."""
-        nodes = np.unique(np.asarray(self._selected(name, model), dtype=np.int64))
+        nodes = self.selected(f"interfaces.{name}", model)
         if self.point is not None and self.type == POINT:
             raise InputError(f"interfaces.{name}.point: found a reference point, expected none for type: point")
         weights = self._weights(name, model, nodes)
@@ -161,30 +199,14 @@ class InterfaceOfNodes(Described):
             )
         return areas
 
-    def _selected(self, name: str, model: FiniteElements) -> object:
-        if self.group is not None:
-            if self.group not in model.groups:
-                listed = ", ".join(model.groups) or "none"
-                near = did_you_mean(self.group, model.groups)
-                raise InputError(
-                    f"interfaces.{name}.group: found no group '{self.group}'{near}, expected one of the file ({listed})"
-                )
-            return model.groups[self.group]
-        if self.sphere is not None:
-            return np.flatnonzero(np.linalg.norm(model.nodes - self.sphere.center, axis=1) <= self.sphere.radius)
-        if self.plane is not None:
-            within = self.plane.within or PRECISION * np.ptp(model.nodes, axis=0).max()
-            across = np.array(self.plane.normal) / np.linalg.norm(self.plane.normal)
-            return np.flatnonzero(np.abs((model.nodes - self.plane.point) @ across) <= within)
-        assert self.nodes is not None
-        numbers = np.arange(len(model.nodes)) if model.numbers is None else model.numbers
-        unknown = np.setdiff1d(self.nodes, numbers)
-        if len(unknown):
-            raise InputError(
-                f"interfaces.{name}.nodes: found node {unknown[0]}, expected {numbers[0]} to {numbers[-1]}"
-                f"{'' if len(numbers) > numbers[-1] - numbers[0] else ' (numbers of the file)'}"
-            )
-        return np.searchsorted(numbers, self.nodes)
+
+class Surface(SelectedNodes):
+    """Surface for loads: the faces of elements, or the shells, all of whose nodes are selected."""
+
+    outside: Direction | None = Field(
+        None,
+        description="direction to the outer side of shells, in the axes of the mesh; by default that of their normals by the order of their nodes",
+    )
 
 
 Mirror = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
@@ -236,6 +258,10 @@ class FlexibleBody(Described):
         None, description="thicknesses by groups of the mesh's shells, m, in place of one thickness"
     )
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
+    surfaces: dict[str, Surface] = Field(
+        default_factory=dict,
+        description="surfaces for loads by name, of a mesh; each adds its static displacements to the modes",
+    )
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
     stiffening: bool | Literal["auto"] = Field("auto", description="geometric stiffening; auto: for a body with a mesh")
@@ -274,6 +300,8 @@ class FlexibleBody(Described):
             raise ValueError("found a thickness with matrices, expected a mesh")
         if len(given) > 1:
             raise ValueError("found thickness and thicknesses, expected one of them")
+        if self.surfaces and self.mesh is None:
+            raise ValueError("found surfaces with matrices, expected a mesh: its elements have faces")
         if self.stiffening is True and self.mesh is None:
             raise ValueError(
                 "found stiffening: true with matrices, expected a mesh: geometric stiffening needs its shape functions"
@@ -334,15 +362,30 @@ class FlexibleBody(Described):
 
     def interfaces_on(self, model: FiniteElements) -> list[Interface]:
         """Return the interfaces on a model, which select its nodes as they are in the file. Raises InputError."""
-        places = of_file = model.nodes * self.signs
-        if self.stretch is not None:
-            of_file = self.stretch.moved(places, places, 1 / self.stretch.scale)
-        before = replace(model, nodes=of_file)
+        places, before = model.nodes * self.signs, self._as_in_the_file(model)
         found = [interface.on(name, before) for name, interface in self.interfaces.items()]
         if self.stretch is not None:
             moved = (self.stretch.moved(each.point[None], places, self.stretch.scale)[0] for each in found)
             found = [replace(each, point=point) for each, point in zip(found, moved, strict=True)]
         return [replace(each, point=each.point * self.signs) for each in found]
+
+    def _as_in_the_file(self, model: FiniteElements) -> FiniteElements:
+        """Return a model with its nodes as they are in the file, neither mirrored nor stretched."""
+        places = model.nodes * self.signs
+        of_file = places if self.stretch is None else self.stretch.moved(places, places, 1 / self.stretch.scale)
+        return replace(model, nodes=of_file)
+
+    def loads_on(self, model: FiniteElements) -> list[np.ndarray]:
+        """Return the unit loads on each surface of a model, as `unit_loads`. Raises InputError."""
+        before, found = self._as_in_the_file(model), []
+        for name, surface in self.surfaces.items():
+            where = f"surfaces.{name}"
+            outside = None if surface.outside is None else np.array(surface.outside) * self.signs
+            with prefixed(f"{where}: ", InputError):
+                found.append(
+                    unit_loads(model, surface.selected("selection", before), outside, float(np.prod(self.signs)))
+                )
+        return found
 
     def _read(self, folder: Path) -> FiniteElements:
         units = self.units.length, self.units.mass, self.units.time

@@ -42,7 +42,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     model = body.model(folder)
     _check_mass(body, rigid_body(model)[0] * density)
     count = None if isinstance(body.modes, UpTo) else body.modes
-    found = reduce(model, body.interfaces_on(model), count, highest, body.residual_modes)
+    found = reduce(model, body.interfaces_on(model), count, highest, body.residual_modes, body.loads_on(model))
     out = io.BytesIO()
     np.savez(
         out,

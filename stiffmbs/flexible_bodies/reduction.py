@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, inv, null_space
 
 from ..errors import InputError
+from .areas import UNIT_LOADS
 from .finite_elements import DISPLACEMENTS, PRECISION, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order
@@ -35,6 +36,8 @@ FIRST_ORDER = {"tetra": "tetra10", "hexahedron": "hexahedron20", "wedge": "wedge
 """Elements of first order, and those of second order in their place."""
 COARSE = 1.0
 """Coarseness of shells above which a note tells so: the deflection of a hemisphere is 4 % too small."""
+LEVI_CIVITA: Final = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(2, 0, 1)
+"""Components of a cross product: a x b = sum over b and c of LEVI_CIVITA[:, b, c] a_b b_c."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
 
@@ -63,6 +66,11 @@ class ReducedBody:
     second: np.ndarray  # shape (n, 3, 3): sum m x psi_k^T, x from the centre of mass
     pairs: np.ndarray  # shape (n, n, 3, 3): sum m psi_l psi_k^T by l and k
     dependent: int  # number of combinations of modes left out as linearly dependent
+    # of the unit loads on each surface (`stiffmbs.flexible_bodies.areas.unit_loads`): force and torque about the centre of mass,
+    # shape (surfaces, 4, 6); forces on the modes (surfaces, 4, n); torques by the displacement of each mode (surfaces, 4, n, 3)
+    wrenches: np.ndarray
+    modal_loads: np.ndarray
+    arms: np.ndarray
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
     elements: str  # types of the elements of a mesh, in the words of meshio; empty for matrices
     parts: str  # names of parts of one material to which the file may give several; empty if there are none
@@ -112,7 +120,7 @@ class ReducedBody:
         factors = {
             "mass": heavier, "inertia": heavier, "frequencies": of_rates, "rigid_frequencies": of_rates,
             "fixed_frequencies": of_rates, "modes": of_modes, "markers": of_modes, "first": 1 / of_modes,
-            "second": 1 / of_modes,
+            "second": 1 / of_modes, "modal_loads": of_modes, "arms": of_modes,
         }  # fmt: skip
         terms = self.second_order
         scaled = replace(terms, static=terms.static / of_rates, stretch=terms.stretch * np.sqrt(stiffer) / heavier)
@@ -134,7 +142,7 @@ class ReducedBody:
         return replace(
             self, modes=self.modes @ turn, markers=self.markers @ turn, first=turn.T @ self.first,
             second=np.einsum("kab,km->mab", self.second, turn), pairs=np.einsum(pairs, self.pairs, turn, turn, optimize=True),
-            second_order=moved,
+            second_order=moved, modal_loads=self.modal_loads @ turn, arms=np.einsum("slka,km->slma", self.arms, turn),
         )  # fmt: skip
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
@@ -173,13 +181,13 @@ class ReducedBody:
 
 def reduce(
     model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None,
-    residual: bool = False,
+    residual: bool = False, loads: Sequence[np.ndarray] = (),
 ) -> ReducedBody:  # fmt: skip
     """Reduce a model to its interfaces and normal modes.
 
     `count`: number of normal modes with all interfaces held. `highest`: frequency up to which these are kept, Hz, without
     a count. `residual`: add the static displacements, with all interfaces held, under the six uniform accelerations of
-    the body. Raises InputError.
+    the body. `loads`: forces on surfaces, each of shape (size, 4), whose static displacements are added too. Raises InputError.
     """
     check_interfaces(list(interfaces), model)
     mass, centre, inertia = rigid_body(model)
@@ -188,8 +196,11 @@ def reduce(
     solver, held = static_solver(model, interfaces, rigid)
     squares, normal = _normal_modes(solver, count, highest)
     static = solver.static_modes()
-    under_weight = [solver.held_response(by_rigid)] if residual else []
-    shapes = np.column_stack([static, *([] if held else [rigid]), normal, *under_weight])
+    under_loads = [solver.held_response(by_rigid)] if residual else []
+    for load in loads:
+        moved = solver.held_response(load)
+        under_loads.append(moved[:, moved.any(axis=0)])
+    shapes = np.column_stack([static, *([] if held else [rigid]), normal, *under_loads])
     shapes /= np.sqrt(np.einsum("ij,ij->j", shapes, model.mass @ shapes))
     basis, condition = _independent(shapes, model)
     participation = (normal.T @ by_rigid)[:, :3]
@@ -206,7 +217,7 @@ def reduce(
         np.array([interface.point for interface in interfaces]).reshape(-1, 3),
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
-        second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
+        *_of_loads(model, centre, modes, loads), second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
         model.parts, model.components,
         0.0 if model.shell is None else coarseness(model.shell, model.cells.values()),
     )  # fmt: skip
@@ -336,7 +347,20 @@ def _moments(model: FiniteElements, centre: np.ndarray, modes: np.ndarray) -> tu
     if model.shell is not None:  # points next to the middle surface move by rotations
         directors = model.shell.directors
         turned = (directors.turned @ modes).reshape(len(directors.places), DISPLACEMENTS * n)
-        weighted = (directors.moments @ turned).reshape(-1, DISPLACEMENTS, n)
+        weighted = (directors.moments @ turned).reshape(len(directors.places), DISPLACEMENTS, n)
         moments += np.einsum("ia,ibk->kab", directors.places, weighted, optimize=True)
-        pairs += np.einsum("ial,ibk->lkab", turned.reshape(-1, DISPLACEMENTS, n), weighted, optimize=True)
+        pairs += np.einsum("ial,ibk->lkab", turned.reshape(*weighted.shape), weighted, optimize=True)
     return by_mass.sum(axis=0).T, moments, pairs
+
+
+def _of_loads(
+    model: FiniteElements, centre: np.ndarray, modes: np.ndarray, loads: Sequence[np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the wrenches of loads, their forces on modes, and their torques by the displacements of modes."""
+    count, n = len(model.nodes), modes.shape[1]
+    forces = np.array(loads).reshape(len(loads), model.size, UNIT_LOADS)
+    at_nodes = forces.reshape(len(loads), count, model.components, UNIT_LOADS)[:, :, :DISPLACEMENTS]
+    shapes = modes.reshape(count, model.components, n)[:, :DISPLACEMENTS]
+    wrenches = np.einsum("snl,nw->slw", forces, model.rigid_modes(centre))
+    arms = np.einsum("abc,ibk,sicl->slka", LEVI_CIVITA, shapes, at_nodes, optimize=True)
+    return wrenches, np.einsum("snl,nk->slk", forces, modes), arms

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 
 FRAME, MODES = "frame", "modes"
+DRAWN = ("markers", "geometry")
+"""Fields of its bodies in a model that may be changed."""
 SHARE = 1e-3
 """Mass of the body of an interface, relative to that of the flexible body, which has less by it."""
 SMALL = 1e-3
@@ -97,6 +99,13 @@ class FlexibleBody(description.FlexibleBody, LineBody):
         for full, part in (*bodies.items(), *joints.items()):
             model.add(full, part)
         return FlexibleHandle(name, {each: model.handle_type(f"{name}.{each}", model) for each in self.interfaces})
+
+    def allows(self, old: object, new: object) -> bool:
+        """Return True for a body with other markers or shapes; all other fields follow from the finite elements."""
+        if not isinstance(old, Body) or type(old) is not type(new):
+            return False
+        own = {name: getattr(old, name) for name in DRAWN}
+        return bool(old == new.model_copy(update=own))  # type: ignore[attr-defined]
 
 
 def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
@@ -170,11 +179,29 @@ def with_same_modes(scenes: Sequence[AnyScene], reference: ModelData) -> list[An
     for scene in scenes:
         bodies, joints = dict(scene.bodies), dict(scene.joints)
         for name in differing:
+            if _is_loaded(scene, name) and not _have_same_modes(known[name], described_bodies(scene.bodies)[name]):
+                raise InputError(
+                    f"bodies.{name}: found a surface load on modes that change with the value, expected a value on which they do not "
+                    "depend, or differences of runs in place of a sensitivity"
+                )
             parts = _parts_with_modes(name, scene.bodies[f"{name}.{FRAME}"], reference.bodies[f"{name}.{FRAME}"])
             bodies |= dict(parts.bodies())
             joints |= dict(parts.joints())
         found.append(scene.model_copy(update={"bodies": bodies, "joints": joints}) if differing else scene)
     return found
+
+
+def _is_loaded(scene: ModelData, name: str) -> bool:
+    """Return True if forces act on the modal coordinates of a flexible body."""
+    modes = scene.bodies[f"{name}.{FRAME}"].modes
+    return any(marker.body in modes for force in scene.forces.values() for _, marker in force.markers())
+
+
+def _have_same_modes(one: FlexibleBody, other: FlexibleBody) -> bool:
+    """Return True if the reductions of two bodies have the same shapes: all but Young's modulus, density and damping are equal."""
+    reduced = set(description.FlexibleBody.model_fields)
+    first, second = (each.scaled().model_dump(include=reduced) for each in (one, other))
+    return first == second
 
 
 def _parts_with_modes(name: str, frame: FloatingFrame, like: FloatingFrame) -> _Parts:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, overload
 
 from pydantic import TypeAdapter
@@ -19,8 +19,9 @@ from ..errors import InputError, prefixed
 from ..reading.fields import located
 from ..reading.formula.text import FormulaError
 from ..reading.given import Law
+from ..reading.handle import Handles
 from ..reading.marker import GROUND, MarkerReference
-from .sections import Body, BodyHandle, Data, Sections, key_of
+from .sections import Body, BodyHandle, Data, Line, Sections, key_of
 
 
 class ModelBuilder(Sections[Data, Body, BodyHandle]):
@@ -55,40 +56,47 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         """
         if isinstance(part, LineBody):
             self._check_name(name)
-            before = [(section, dict(section)) for section in self._sections()]
-            try:
-                return part.add_to(self, name)
-            except InputError:
-                for section, kept in before:
-                    section.clear()
-                    section.update(kept)
-                raise
+            with self._restored():
+                return self._add_line(name, part)
         section = self._section_for(name, part)
         self._check_name(name)
         self._check(name, part)
         section[name] = part
         return self._handle(name)
 
+    def _add_line(self, name: str, part: LineBody) -> Any:
+        """Add a beam or a flexible body, and record the names of its bodies and elements."""
+        before = [(section, len(section)) for section in self._sections()]
+        handles = part.add_to(self, name)
+        names = tuple(key for section, count in before for key in [*section][count:])
+        self._lines[name] = Line(part, names)
+        self._owners |= dict.fromkeys(names, name)
+        return handles
+
     @overload
     def replace(self, name: str | BodyHandle, part: Body) -> BodyHandle: ...
 
     @overload
+    def replace(self, name: str | Handles, part: LineBody) -> Any: ...
+
+    @overload
     def replace(self, name: str | BodyHandle, part: Joint | Force) -> None: ...
 
-    def replace(self, name: str | BodyHandle, part: Any) -> BodyHandle | None:
+    def replace(self, name: str | BodyHandle | Handles, part: Any) -> Any:
         """Replace a body, a joint or a force, keeping its name.
 
         Parameters
         ----------
-        name : str or BodyHandle
+        name : str, BodyHandle, BeamHandle or FlexibleHandle
             Name of the part that is replaced.
-        part : Body, Joint or Force
-            Replacement of the same category: a body for a body, a joint for a joint, a force for a force.
+        part : Body, Beam, FlexibleBody, Joint or Force
+            Replacement of the same category: a body for a body, a beam for a beam, a flexible body for a flexible body,
+            a joint for a joint, a force for a force. Of a flexible body, other parts may use the interfaces that both have.
 
         Returns
         -------
-        BodyHandle or None
-            As for `add`; existing handles refer to the new body.
+        BodyHandle, BeamHandle, FlexibleHandle or None
+            As for `add`; existing handles of bodies refer to the new body.
 
         Raises
         ------
@@ -97,20 +105,66 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             lacks.
         """
         name = str(name)
+        if name in self._lines:
+            return self._replace_line(name, part)
         section = self._found(name)
-        if section is not self._section_for(name, part):
+        self._check_owner(name, part)
+        if isinstance(part, LineBody) or section is not self._section_for(name, part):
             raise InputError(
                 f"{name}: found {part!r} in place of {section[name]!r}, expected a body for a body, a joint for a joint, a force for a force"
             )
         self._check(name, part)
         fewer_markers = section is self.bodies and section[name].markers.keys() - part.markers.keys()
         if isinstance(part, Joint) or (isinstance(part, Force) and self.requests) or fewer_markers:
-            self._changed(name, section, lambda: section.update({name: part}))
+            self._changed(name, lambda: section.update({name: part}))
         section[name] = part
         return self._handle(name)
 
-    def remove(self, name: str | BodyHandle) -> None:
-        """Remove a body, a joint, a force, a request, or a marker of ground (``"ground.pivot"``) from the model.
+    def _replace_line(self, name: str, part: Any) -> Any:
+        """Replace a beam or a flexible body by another one; its bodies and elements take the places of the old ones."""
+        old = self._lines[name]
+        if type(part) is not type(old.part):
+            raise InputError(
+                f"{name}: found {part!r} in place of {old.part!r}, expected a beam for a beam, a flexible body for a flexible body"
+            )
+        self._check_loads(name)
+        before = [(section, [*section]) for section in self._sections()]
+
+        def change() -> Any:
+            self._take_out(name)
+            handles = self._add_line(name, part)
+            for section, keys in before:
+                _in_the_order(section, keys, {*old.names, *self._lines[name].names})
+            return handles
+
+        return self._changed(name, change)
+
+    def _take_out(self, name: str) -> None:
+        """Remove a beam or a flexible body with all its bodies and elements."""
+        for key in self._lines.pop(name).names:
+            del self._owners[key]
+            for section in self._sections():
+                section.pop(key, None)
+
+    def _check_loads(self, name: str) -> None:
+        """Refuse the change of a flexible body on which loads act whose forces are those of its modes."""
+        load = next((other for other, line in self._lines.items() if line.part.depends_on() == name), None)
+        if load is not None:
+            raise InputError(
+                f"{name}: found the load '{load}' on it, expected that to be removed first and added again"
+            )
+
+    def _check_owner(self, name: str, part: object) -> None:
+        """Refuse the change of a body or element that belongs to a beam or a flexible body. `part`: None if it is removed."""
+        owner = self._owners.get(name)
+        if owner is None:
+            return
+        if part is None or not self._lines[owner].part.allows(self._found(name)[name], part):
+            what = f"model.remove('{owner}')" if part is None else f"model.replace('{owner}', ...)"
+            raise InputError(f"{name}: found a part of '{owner}', which can only be changed as a whole: {what}")
+
+    def remove(self, name: str | BodyHandle | Handles) -> None:
+        """Remove a body, a beam, a joint, a force, a request, or a marker of ground (``"ground.pivot"``) from the model.
 
         Raises
         ------
@@ -118,8 +172,12 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             If there is no such part, or others refer to it.
         """
         name = str(name)
+        if name in self._lines:
+            self._changed(name, lambda: self._take_out(name))
+            return
         section = self._found(name)
-        self._changed(name, section, lambda: section.pop(key_of(name)))
+        self._check_owner(name, None)
+        self._changed(name, lambda: section.pop(key_of(name)))
 
     def _handle(self, name: str) -> BodyHandle | None:
         return self.handle_type(name, self) if name in self.bodies else None
@@ -202,3 +260,15 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         from .model_text import model_text
 
         return model_text(self.data())
+
+
+def _in_the_order(section: dict[str, Any], before: Sequence[str], own: Collection[str]) -> None:
+    """Move the own entries of a section to the place of the first of them before a change."""
+    first = next((k for k, key in enumerate(before) if key in own), len(before))
+    moved = {key: section[key] for key in section if key in own}
+    others = {key: value for key, value in section.items() if key not in own}
+    keys = [*others]
+    section.clear()
+    section.update(
+        {**{key: others[key] for key in keys[:first]}, **moved, **{key: others[key] for key in keys[first:]}}
+    )

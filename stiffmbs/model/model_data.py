@@ -267,8 +267,10 @@ def contents(model: Any) -> str:
 
 def _check_deformable(where: str, element: str, body: str, bodies: Mapping[str, Any]) -> None:
     """Refuse an element on a frame or modal coordinates of a flexible body, other than its own: a force there would not deform it."""
-    name = body.rpartition(".")[0]
-    if not element.removeprefix("joints.").startswith(f"{name}."):
+    name, _, part = body.rpartition(".")
+    is_own = element.removeprefix("joints.").removeprefix("forces.").startswith(f"{name}.")
+    of_load = element.rpartition(".")[2] in (part, "torque")
+    if not is_own or (element.startswith("forces.") and not of_load):
         own = [other for other in bodies if other.startswith(f"{name}.") and bodies[other].rigid]
         listed = ", ".join(own) or "it has none"
         raise ValueError(

@@ -6,10 +6,11 @@ import copy
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
-from ..elements.body import is_flexible
+from ..elements.body import is_flexible, is_surface_load
 from ..elements.roads.field import read_roads
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
@@ -21,6 +22,7 @@ from ..reading.files.quoted import written
 from ..reading.files.unchanged import Unchanged
 from ..reading.files.variables import read_variables
 from ..reading.files.yaml_text import Content, read_yaml
+from ..reading.names import beginnings
 from ..reading.units.units import Quantity
 from .beams.division import beams_read
 from .beams.entries import with_beams
@@ -29,8 +31,9 @@ from .files.effective import chosen_options, keep_one_grid
 from .files.stages import with_held, written_stages
 from .files.written_scene import WrittenScene
 from .model_data import STARTS_LATER
+from .parts.changes import REPEATED, Later, refuse_unused_of_parts, set_later, set_now
 from .parts.placed import with_parts
-from .parts.placing import NAMED, as_written, placed_in_use, set_in_instances
+from .parts.placing import NAMED, as_written, placed_in_use
 from .scene import Scene, scene_class
 
 Changes = Sequence[tuple[str, object]]
@@ -38,7 +41,6 @@ Changes = Sequence[tuple[str, object]]
 LineOf = Callable[[tuple[object, ...]], int | str | None]
 """Function that returns the line in the source of a path of keys."""
 NO_FILES: Mapping[str, str] = MappingProxyType({})
-SECTIONS = ("variables", "states", "bodies", "joints", "forces")
 OF_ENTRIES = (*NAMED, "use", "roads", "tables", "inputs")
 """Sections whose keys are names of entries."""
 
@@ -124,20 +126,21 @@ def _made_scene(
     parts = found.get("parts")
     found, changes = placed_in_use(found, changes)
     expand.refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
+    refuse_unused_of_parts(found, changes)
     replaced = expand.replaced_parameters(found, changes)
     names = {section: tuple(part) if isinstance(part := found.get(section), dict) else () for section in OF_ENTRIES}
-    in_parts, own = [], []
+    later, own = [], []
     for path, value in changes:
         read = read_yaml(value, f"--set {path}") if isinstance(value, str) else value
-        if set_in_instances(path, found.get("use")):
-            in_parts.append((path, read))
+        if set_later(path, found):
+            later.append((path, read))
         else:
-            expand.set_value(found, path, read)
+            set_now(found, path, read)
             own.append(path)
     keep_one_grid(found, {path for path, _ in changes})
     try:
         others = {**chosen, FOLDER: folder, STARTS_LATER: starts_later}
-        scene = _validated(found, replaced, in_parts, others, known)
+        scene = _validated(found, replaced, Later(later), others, known)
     except _Located as error:
         message = as_written(str(error), parts)
         there = error.path if message == str(error) else ("parts", *error.path[1:])
@@ -196,7 +199,8 @@ def _unknown_entry(fault: tuple[object, ...], paths: Sequence[str], known: Mappi
     """Return a clause on a change within an entry that the scene does not have, if the fault is there."""
     for path in paths:
         section, *keys = path.split(".")
-        if len(keys) > 1 and (section, keys[0]) == fault[:2] and section in known and keys[0] not in known[section]:
+        there = any(start in known.get(section, ()) for start, _ in beginnings(".".join(keys)))
+        if len(keys) > 1 and (section, keys[0]) == fault[:2] and section in known and not there:
             near = did_you_mean(keys[0], (*known[section], *(known["use"] if section in NAMED else ())))
             return f"--set {path}: found no '{keys[0]}' in {section}{near}, expected an entry of the scene, or a whole new one: "
     return ""
@@ -211,27 +215,30 @@ class _Located(Exception):
 
 
 def _validated(
-    found: Content, replaced: Mapping[str, Quantity], in_parts: Changes, known: Content, unchanged: Unchanged
+    found: Content, replaced: Mapping[str, Quantity], later: Later, known: Content, unchanged: Unchanged
 ) -> Scene:
     try:
         parameters = expand.read_parameters(found.get("parameters"), replaced)
         found = _with_path(found, parameters)
         tables = expand.read_tables(found.get("tables"), parameters)
         raw = {
-            key: expand.repeat_entries(key, value, parameters) if key in SECTIONS else value
+            key: expand.repeat_entries(key, value, parameters) if key in REPEATED else value
             for key, value in found.items()
         }
+        for section in REPEATED:
+            later.set(section, raw.get(section))
         raw = with_beams(raw, parameters)
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, object] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
         context["roads"] = read_roads(raw.get("roads"), context)
         raw = _with_flexible_bodies(raw, context)
-        raw, context = with_parts(raw, _family(raw), context, in_parts)
-        raw = _with_vehicle(raw, context)
+        raw, context = with_parts(raw, _family(raw), context, later)
+        raw = _with_vehicle(_with_surface_loads(raw, context), context)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"], raw["roads"] = tables, context["roads"]
+    of_parts: Any = context["of_parts"]
     written_entries = dict(raw)
     raw = unchanged.put_into(raw, context)
     try:
@@ -242,7 +249,7 @@ def _validated(
         message = sentence(error)
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
-    scene._quantities = parameters
+    scene._quantities, scene._of_parts = parameters, of_parts
     unchanged.keep(written_entries, context, scene)
     return scene
 
@@ -256,6 +263,16 @@ def _with_flexible_bodies(raw: dict[str, object], context: Mapping[str, object])
     from .flexible import with_flexible_bodies
 
     return with_flexible_bodies(raw, context)
+
+
+def _with_surface_loads(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:
+    """Return a scene with loads on surfaces of flexible bodies expanded; their module is imported only for these."""
+    forces = raw.get("forces")
+    if not isinstance(forces, dict) or not any(is_surface_load(entry) for entry in forces.values()):
+        return raw
+    from .surface_loads import with_surface_loads
+
+    return with_surface_loads(raw, context)
 
 
 def _with_path(raw: dict[str, object], parameters: Mapping[str, Quantity]) -> dict[str, object]:

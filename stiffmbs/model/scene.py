@@ -27,6 +27,7 @@ from .settings import RunSettings, StartPose, SteadyMotion
 
 if TYPE_CHECKING:
     from .files.stages import Stage
+    from .parts.as_described import AsDescribed
 
 
 def _stage() -> type[Stage]:
@@ -84,6 +85,7 @@ class Scene(ModelData):
     _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
     _held_at_start: Scene | None = PrivateAttr(default=None)
     _beams: Beams = PrivateAttr(default_factory=Beams)
+    _of_parts: AsDescribed | None = PrivateAttr(default=None)
 
     @field_validator("units")
     @classmethod
@@ -140,6 +142,11 @@ class Scene(ModelData):
             if stage.over_time:
                 time = time + scene.run.duration if stage.end is None else max(time, stage.end)
         return time
+
+    @property
+    def of_parts(self) -> AsDescribed | None:
+        """Values of parts before these are placed; None for a scene without parts."""
+        return self._of_parts
 
     @property
     def written(self) -> WrittenScene | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..elements.body import SURFACE_LOAD
 from ..elements.body import Body as PlanarBody
 from ..elements.planar_kinds import FORCES, JOINTS
 from ..reading.fields import Described
@@ -35,9 +36,10 @@ def scene_schema() -> dict[str, object]:
     from .beams.spatial import BeamBody as SpatialBeam
     from .parts.spatial_frame import SpatialUse
     from .spatial_scene import SpatialScene
+    from .surface_loads import SurfaceLoad
 
     planar: list[type[Described]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
-    spatial: list[type[Described]] = [SpatialBody, SpatialBeam, DistributedLoad]
+    spatial: list[type[Described]] = [SpatialBody, SpatialBeam, DistributedLoad, SurfaceLoad]
     spatial += [*SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
     scenes: list[type[Described]] = [PlanarScene, SpatialScene]
     uses: list[type[Described]] = [PlanarUse, SpatialUse]
@@ -50,6 +52,10 @@ def scene_schema() -> dict[str, object]:
         whole = schema["$defs"][found[scene, "validation"]["$ref"].rpartition("/")[2]]
         contact = schema["$defs"]["Contact" if beam is PlanarBeam else "SphereContact"]
         _add_beams(whole["properties"], found[beam, "validation"], found[DistributedLoad, "validation"], contact)
+        if scene is SpatialScene:
+            forces, load = whole["properties"]["forces"]["additionalProperties"], found[SurfaceLoad, "validation"]
+            forces["oneOf"].append(load)
+            forces["discriminator"]["mapping"][SURFACE_LOAD] = load["$ref"]
     for scene, use in ((PlanarScene, PlanarUse), (SpatialScene, SpatialUse)):
         _add_parts(schema["$defs"], found[scene, "validation"], found[use, "validation"])
     in_plane, in_space = (found[scene, "validation"] for scene in scenes)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
-from ..elements.body import AnyBody, check_names
+from ..elements.body import AnyBody, LineBody, check_names
 from ..elements.element import Element, Force, Joint
 from ..elements.kinds import Kinds
 from ..elements.own_elements import check_class
@@ -22,6 +24,15 @@ from .model_data import RESERVED, ModelData, check_element, contents
 Data = TypeVar("Data", bound=ModelData)
 Body = TypeVar("Body", bound="AnyBody")
 BodyHandle = TypeVar("BodyHandle", bound=Handle)
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Line:
+    """Beam or flexible body of a model, and the names of its bodies and elements."""
+
+    part: LineBody
+    names: tuple[str, ...]
 
 
 class Sections(Generic[Data, Body, BodyHandle]):
@@ -42,6 +53,8 @@ class Sections(Generic[Data, Body, BodyHandle]):
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
         self.requests: dict[str, object] = {}
+        self._lines: dict[str, Line] = {}  # beams and flexible bodies by name
+        self._owners: dict[str, str] = {}  # names of these by those of their bodies and elements
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
@@ -53,7 +66,8 @@ class Sections(Generic[Data, Body, BodyHandle]):
         for section in (self.markers,) if name.startswith(f"{GROUND}.") else self._sections():
             if key_of(name) in section:
                 return section
-        near = did_you_mean(key_of(name), [known for section in (self.markers, *self._sections()) for known in section])
+        sections = (self.markers, *self._sections(), self._lines)
+        near = did_you_mean(key_of(name), [known for section in sections for known in section])
         raise InputError(f"{name}: found no part of that name{near}, expected one of {self!r}")
 
     def _section_for(self, name: str, part: object) -> dict[str, Any]:
@@ -70,10 +84,28 @@ class Sections(Generic[Data, Body, BodyHandle]):
             )
         return self.joints if isinstance(part, Joint) else self.forces
 
-    def _changed(self, name: str, section: dict[str, object], change: Callable[[], object]) -> None:
-        """Change a section; restore it if other parts then refer to missing ones."""
-        before = dict(section)
-        change()
+    @contextmanager
+    def _restored(self) -> Iterator[None]:
+        """Restore all sections if a change of them fails."""
+        before: list[tuple[dict[str, Any], dict[str, Any]]]
+        before = [(section, dict(section)) for section in (self.markers, *self._sections(), self._lines, self._owners)]
+        try:
+            yield
+        except (InputError, ValueError):
+            for section, kept in before:
+                section.clear()
+                section.update(kept)
+            raise
+
+    def _changed(self, name: str, change: Callable[[], Result]) -> Result:
+        """Change sections, and return the result; restore them if the change fails, or other parts then refer to missing ones."""
+        with self._restored():
+            result = change()
+            self._check_others(name)
+        return result
+
+    def _check_others(self, name: str) -> None:
+        """Check the references of all parts after the change of one."""
         scope = self._scope(self._names())
         try:
             for other, element in (*self.joints.items(), *self.forces.items()):
@@ -81,8 +113,6 @@ class Sections(Generic[Data, Body, BodyHandle]):
             check_states(self.states, scope)
             self.data_type.model_construct(**self._content()).check_requests()
         except ValueError as error:
-            section.clear()
-            section.update(before)
             raise InputError(
                 f"{name}: found it in use ({error}), expected the elements that refer to it to be changed first"
             ) from None
@@ -101,7 +131,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
 
     def _check_name(self, name: str) -> None:
         self._check_spelling(name, "part")
-        if name in RESERVED or any(name in section for section in self._sections()):
+        if name in RESERVED or name in self._lines or any(name in section for section in self._sections()):
             raise InputError(f"{name}: found a name that is taken or reserved, expected another")
 
     def _check(self, name: str, part: Described) -> None:

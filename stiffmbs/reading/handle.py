@@ -103,6 +103,9 @@ class Handles(Mapping[str, Handle]):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}: {', '.join(self._bodies)}>"
 
+    def __str__(self) -> str:
+        return self.name
+
     def __getattr__(self, body: str) -> Handle:
         if body.startswith("_") or body not in self._bodies:
             raise AttributeError(f"{self.name}: found no {self.what} '{body}'{instead_of(body, self._bodies)}")

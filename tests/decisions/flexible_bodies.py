@@ -102,7 +102,7 @@ def lowest_elastic_frequency():
             reduction, check_interfaces=nothing, rigid_body=lambda _: (1.0, 0.0, 0.0), static_solver=lambda *_: (solver, True),
             _normal_modes=lambda *_: (np.ones(1), eye), _independent=lambda *_: (eye, 1.0),
             _free_modes=lambda *_: (np.array([frequency]), eye), _rigid_frequencies=lambda *_: np.ones(1),
-            _marker_modes=nothing, _moments=lambda *_: (), second_order=nothing, ReducedBody=nothing,
+            _marker_modes=nothing, _moments=lambda *_: (), _of_loads=lambda *_: (), second_order=nothing, ReducedBody=nothing,
         ):  # fmt: skip
             return refused(
                 lambda: reduction.reduce(

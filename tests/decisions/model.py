@@ -11,7 +11,7 @@ from stiffmbs.errors import InputError
 from stiffmbs.model import flexible, mounted_tyres, tuning
 from stiffmbs.model.beams import axis, discretise, drawn_section, interpolation, rigid_motion, section
 from stiffmbs.model.files import expand, scenes_read_before
-from stiffmbs.model.parts import frame, hard_points, instances
+from stiffmbs.model.parts import changes, frame, hard_points, instances
 from stiffmbs.model.paths import curves, lanes
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import settings as grids
@@ -65,7 +65,7 @@ def discretised(place=0.5):
 
     with patch.multiple(
         discretise, _intervals=lambda *_: [(beam.pieces()[0], 0.0, 0.0, 1.0)], _Interval=interval,
-        Divided=lambda _total, _counts, tolerance, _names: tolerance, Line=lambda nodes, _, tolerance: (nodes, tolerance),
+        Divided=lambda _total, _counts, tolerance, _names: tolerance, Line=lambda nodes, _, tolerance, _spans: (nodes, tolerance),
     ):  # fmt: skip
         return discretise.discretise(beam)
 
@@ -190,7 +190,7 @@ def farthest_hard_point():
 def deepest_parts():
     def accepts(depth):
         definitions = Record(use=lambda *_: (Record(part="a"), {}))
-        found = Record(definitions=definitions, words={}, _add=nothing)
+        found = Record(definitions=definitions, words={}, later=changes.Later(), _add=nothing)
         with patch.multiple(instances, repeat_entries=lambda _where, used, _: used, _check_name=nothing):
             return not refused(lambda: instances.Instances.read(found, {"a": {}}, {}, None, depth))
 

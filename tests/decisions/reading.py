@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from unittest.mock import patch
 
 from stiffmbs.errors import InputError
@@ -28,10 +29,10 @@ def largest_file():
 
 def most_included_files():
     def accepts(count):
-        file = Record(resolve=nothing)
+        own = Record(sources=Record(texts=range(count)), folder=Path())
         with patch.object(include, "_check_file", lambda *_: reach(None)):
             try:
-                include._Including._content(Record(sources=Record(texts=range(count))), file, "", (), ())
+                include._Including._content(own, Path("file"), "", (), ())
             except InputError:
                 return False
             except Reached:

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from stiffmbs import load_scene, read_scene
+import stiffmbs
+from stiffmbs import load_scene, read_scene, spatial
 from stiffmbs.analyses.run import run
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.description import FlexibleBody
@@ -136,6 +137,138 @@ def test_a_model_built_in_python_moves_as_the_scene(folder, plain, monkeypatch):
     assert (list(model.bodies), list(model.joints)) == known
     with pytest.raises(InputError, match=r"other: none\.vtu: "):
         model.add("other", BodyOfModel(mesh="none.vtu", units={"length": 1}, material={"E": 1, "nu": 0, "density": 1}))
+
+
+PLANES = {
+    "root": {"plane": {"point": [0, 0, 0], "normal": [1, 0, 0]}},
+    "tip": {"plane": {"point": [1, 0, 0], "normal": [1, 0, 0]}},
+}
+ROOT, TIP = ({name: PLANES[name]} for name in PLANES)
+
+
+def arm_with_weight(**fields):
+    """Return a model with an arm that carries a weight, and the handle of the arm."""
+    model = Model("wing", gravity=(0, 0, -9.81))
+    model.add("base", Body(mass=2, inertia=(1, 1, 1)))
+    model.add("foot", Fixed(i="base", j="ground"))
+    arm = model.add("arm", arm_like(interfaces=PLANES, **fields))
+    model.add("weight", Body(mass=0.5, inertia=(0.001, 0.002, 0.003), position=(1, 0.15, 0.02)))
+    model.add("clamp", Fixed(i=arm.root, j="ground"))
+    model.add("end", Fixed(i=arm.tip, j="weight"))
+    model.request("height", "arm.tip.z")
+    return model, arm
+
+
+def sections(model):
+    return [dict(section) for section in (model.bodies, model.joints, model.forces, model.requests)]
+
+
+def test_a_flexible_body_is_replaced_with_the_parts_that_refer_to_it(folder, monkeypatch):
+    """By one with other modes and dimensions; the model is the one that has it from the beginning."""
+    monkeypatch.chdir(folder)
+    model, arm = arm_with_weight(modes=2, damping=0.02)
+    new = model.replace(arm, arm_like(interfaces=PLANES, modes=7, damping=0.01))
+    assert repr(new) == "<FlexibleHandle arm: root, tip>"
+    expected, _ = arm_with_weight(modes=7, damping=0.01)
+    assert sections(model) == sections(expected)
+    assert [list(section) for section in sections(model)] == [list(section) for section in sections(expected)]
+    found, other = (each.run(duration=0.02, points=3) for each in (model, expected))
+    np.testing.assert_array_equal(found["height"], other["height"])
+    fewer = model.replace("arm", arm_like(interfaces=PLANES, modes=0))
+    assert list(model.bodies) == ["base", "arm.frame", "arm.modes1", "arm.modes2", "arm.root", "arm.tip", "weight"]
+    assert fewer.tip.position == pytest.approx((1, 0.15, 0.02))
+
+
+def test_a_flexible_body_in_use_stays(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    model, arm = arm_with_weight(modes=2)
+    before = sections(model)
+    for change, words in [
+        (lambda: model.remove(arm), r"arm: found it in use \(clamp\.i: found the unknown body 'arm\.root'"),
+        (lambda: model.replace("arm", arm_like(interfaces=ROOT)), r"arm: found it in use \(end\.i: found the unknown body 'arm\.tip'"),
+        (lambda: model.replace("arm", arm_like(interfaces={"frame": PLANES["tip"]})), r"interfaces: found 'frame', the name of a part"),
+        (lambda: model.replace("arm", BodyOfModel(mesh="none.vtu", units={"length": 1}, material={"E": 1, "nu": 0, "density": 1})),
+         r"arm: none\.vtu: "),
+        (lambda: model.replace("arm", Body(mass=1, inertia=(1, 1, 1))), r"arm: found Body\(.* in place of FlexibleBody\(.*a flexible body for"),
+        (lambda: model.replace("base", arm_like(interfaces=ROOT)), r"base: found FlexibleBody\(.* in place of Body\(.*a body for a body"),
+        (lambda: model.replace("none", arm_like(interfaces=ROOT)), r"none: found no part of that name"),
+        (lambda: model.add("arm", Body(mass=1, inertia=(1, 1, 1))), r"arm: found a name that is taken"),
+        (lambda: model.add("arm", arm_like(interfaces=ROOT)), r"arm: found a name that is taken"),
+        (lambda: model.remove("arm.tip"), r"arm\.tip: found a part of 'arm', which can only be changed as a whole: model\.remove\('arm'\)"),
+        (lambda: model.remove("arm.modes1"), r"arm\.modes1: found a part of 'arm'"),
+        (lambda: model.remove("arm.tip_interface"), r"arm\.tip_interface: found a part of 'arm'"),
+        (lambda: model.replace("arm.tip", Body(mass=1, inertia=(1, 1, 1))), r"arm\.tip: .* as a whole: model\.replace\('arm', \.\.\.\)"),
+        (lambda: setattr(arm.tip, "mass", 3), r"arm\.tip: found a part of 'arm'"),
+        (lambda: model.replace("arm.tip_interface", Fixed(i="arm.tip", j="ground")), r"arm\.tip_interface: found a part of 'arm'"),
+    ]:  # fmt: skip
+        with pytest.raises(InputError, match=words):
+            change()
+        assert sections(model) == before
+    model.run(duration=0.01, points=2)
+
+
+def test_a_flexible_body_is_removed_and_added_again(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    model, arm = arm_with_weight(modes=2)
+    before = sections(model)
+    removed = ["clamp", "end", "height"]
+    for name in removed:
+        model.remove(name)
+    model.remove(arm)
+    assert (list(model.bodies), list(model.joints)) == (["base", "weight"], ["foot"])
+    with pytest.raises(InputError, match=r"arm: found no part of that name"):
+        model.remove("arm")
+    with pytest.raises(InputError, match=r"arm\.tip: found a body that was removed"):
+        _ = arm.tip.mass
+    again = model.add("arm", arm_like(interfaces=PLANES, modes=2))
+    model.add("clamp", Fixed(i=again.root, j="ground"))
+    model.add("end", Fixed(i=again.tip, j="weight"))
+    model.request("height", "arm.tip.z")
+    assert sections(model) == before
+    model.remove("end")
+    model.remove("height")
+    assert [*model.replace("arm", arm_like(interfaces=ROOT, modes=0))] == ["root"]
+
+
+def test_markers_of_interfaces_are_added(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    model, arm = arm_with_weight(modes=2)
+    arm.tip.markers = {"hole": {"point": (0, 0, 0.01)}}
+    model.add("spring", SpringDamper(i="arm.tip.hole", j="ground", stiffness=1))
+    assert model.run(duration=0.01, points=2).outcome
+    with pytest.raises(InputError, match=r"arm: found it in use \(spring\.i: found 'arm\.tip\.hole'"):
+        model.replace("arm", arm_like(interfaces=PLANES, modes=3))
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_beams_are_replaced_and_removed(dimensions):
+    family = stiffmbs if dimensions == 2 else spatial
+    end = (1, 0, 0)[:dimensions]
+    section = {"type": "rectangle", "width": 0.02, "height": 0.01}
+    steel = {"E": 2e11, "density": 7850, **({"nu": 0.3} if dimensions == 3 else {})}
+
+    def beam(elements):
+        return family.BeamBody(
+            start=(0, 0, 0)[:dimensions], end=end, section=section, material=steel, elements=elements
+        )
+
+    def made(elements):
+        model = family.Model()
+        strip = model.add("strip", beam(elements))
+        model.add("clamp", family.Fixed(i=strip.start, j="ground"))
+        return model, strip
+
+    model, strip = made(4)
+    new = model.replace(strip, beam(6))
+    assert sections(model) == sections(made(6)[0])
+    assert list(new) == list(made(6)[1])
+    with pytest.raises(InputError, match=r"strip: found it in use \(clamp\.i"):
+        model.remove("strip")
+    with pytest.raises(InputError, match=r"strip\.start: found a part of 'strip'"):
+        model.remove("strip.start")
+    model.remove("clamp")
+    model.remove(new)
+    assert not (model.bodies or model.forces)
 
 
 @pytest.mark.parametrize("axes", ["x", "yz", "xyz"])

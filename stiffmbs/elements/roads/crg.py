@@ -26,7 +26,9 @@ LEVEL = 3
 """Number of points before and after the road that keep it level there."""
 
 
-AnyCrg = Annotated[CrgGrid, in_file(CrgGrid, read_crg, "the name of an OpenCRG file, in the folder of the scene")]
+AnyCrg = Annotated[
+    CrgGrid, in_file(CrgGrid, read_crg, "the name of an OpenCRG file, relative to the folder of the file that names it")
+]
 
 
 class CrgRoad(Road):
@@ -41,7 +43,7 @@ class CrgRoad(Road):
 
     kind = "crg"
 
-    file: AnyCrg = Field(description="the name of an OpenCRG file, in the folder of the scene")
+    file: AnyCrg = Field(description="the name of an OpenCRG file, relative to the folder of the file that names it")
     placed: Literal["origin", "file"] = Field(
         "origin",
         description="whether the road begins at the origin along x (OpenCRG's default), or at the position in the file",

@@ -73,7 +73,9 @@ def _refuse_disorder(found: list[tuple[int, float]], name: str, path: Path) -> N
             )
 
 
-AnyGrid = Annotated[Grid, in_file(Grid, read_grid, "the name of a file of heights, in the folder of the scene")]
+AnyGrid = Annotated[
+    Grid, in_file(Grid, read_grid, "the name of a file of heights, relative to the folder of the file that names it")
+]
 
 
 class GridRoad(Road):
@@ -85,7 +87,7 @@ class GridRoad(Road):
 
     kind = "grid"
 
-    file: AnyGrid = Field(description="the name of a file of heights, in the folder of the scene")
+    file: AnyGrid = Field(description="the name of a file of heights, relative to the folder of the file that names it")
 
     def extent(self) -> tuple[float, float]:
         points = self.file.tables[0].table

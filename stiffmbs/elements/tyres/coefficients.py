@@ -434,7 +434,10 @@ def _read(found: object, context: Context) -> TyreProperties:
 
 
 def _schema(_: object) -> JsonSchema:
-    name = {"type": "string", "description": "the name of a property file (.tir), in the folder of the scene"}
+    name = {
+        "type": "string",
+        "description": "the name of a property file (.tir), relative to the folder of the file that names it",
+    }
     numbers = {"type": "object", "additionalProperties": {"type": "number"}}
     return {"anyOf": [name, {"type": "object", "properties": {"coefficients": numbers}}]}
 

@@ -72,12 +72,38 @@ class Element:
 
 
 @dataclass(frozen=True)
+class Span:
+    """Part of a beam with the nodes of one group of elements."""
+
+    start: float  # m along the axis
+    end: float
+    first: int  # number of its first node
+    group: Group
+
+    def shares(self, first: float, last: float) -> np.ndarray:
+        """Return the lengths at its nodes of the part between two places, m along the axis."""
+        length, lower, upper = self.end - self.start, max(self.start, first), min(self.end, last)
+        if upper - lower >= length * (1 - SAME):
+            return length * self.group.weights
+        return length * self.group.integrals((lower - self.start) / length, (upper - self.start) / length)
+
+
+@dataclass(frozen=True)
 class Line:
     """Nodes and elements of a beam, in order, and the division into the latter."""
 
     nodes: list[Node]
     elements: list[Element]
     divided: Divided
+    spans: list[Span]
+
+    def shares(self, first: float, last: float) -> np.ndarray:
+        """Return the length at each node of the part between two places, m along the axis."""
+        found = np.zeros(len(self.nodes))
+        for span in self.spans:
+            if span.start < last and first < span.end:
+                found[span.first : span.first + len(span.group.nodes)] += span.shares(first, last)
+        return found
 
 
 class Constants(NamedTuple):
@@ -148,6 +174,7 @@ def discretise(beam: Any) -> Line:
 
     nodes: list[Node] = []
     elements: list[Element] = []
+    spans: list[Span] = []
     intervals = list(_intervals(pieces, beam.stations, total))
     wanted: Elements = beam.elements
     counts = wanted.counts or _counts([b - a for _, _, a, b in intervals], wanted.number)
@@ -155,7 +182,7 @@ def discretise(beam: Any) -> Line:
         raise ValueError(f"elements: found {len(counts)} numbers, expected {len(intervals)}, one for each interval")
     for (piece, first, a, b), count in zip(intervals, counts, strict=True):
         up = Z if planar else upward(piece) if beam.up is None else np.array(beam.up, dtype=float)
-        add = _Interval(piece, first, constants, up, planar, nodes, elements)
+        add = _Interval(piece, first, constants, up, planar, nodes, elements, spans)
         if beam.interpolation == "pairs":
             add.group(a, b, Group.of_pairs(count))
             continue
@@ -170,9 +197,8 @@ def discretise(beam: Any) -> Line:
             node.radius = _between(beam.section, beam.section_end, node.s / total).radius(planar)
     nodes[0].name, nodes[-1].name = "start", "end"
     tolerance = AUTOMATIC * total if wanted.tolerance == 0 else wanted.tolerance
-    return Line(
-        nodes, elements, Divided(total, tuple(counts), tolerance, {node.name: node.s / total for node in nodes})
-    )
+    divided = Divided(total, tuple(counts), tolerance, {node.name: node.s / total for node in nodes})
+    return Line(nodes, elements, divided, spans)
 
 
 def _intervals(
@@ -216,6 +242,7 @@ class _Interval:
     planar: bool
     nodes: list[Node]
     elements: list[Element]
+    spans: list[Span]
 
     def group(self, start: float, end: float, group: Group) -> None:
         """Add the nodes and elements of a group of elements between two places, m along the axis."""
@@ -225,6 +252,7 @@ class _Interval:
             self.nodes.append(Node("", float(where[0]), *poses[0]))
         self.nodes.extend(Node("", float(s), *pose) for s, pose in zip(where[1:], poses[1:], strict=True))
         own = self.nodes[-len(where) :]
+        self.spans.append(Span(start, end, len(self.nodes) - len(where), group))
         for node, s, (_, axes), weight in zip(own, where, poses, group.weights, strict=True):
             of = self.constants(float(s))
             node.lump(float(weight) * (end - start), of.mass, self._inertia(of), axes)

@@ -56,7 +56,7 @@ def expand_beams(
     for name, entry in (forces or {}).items():
         if name in added:
             raise InputError(f"forces.{name}: found a name that a beam makes too, expected another")
-        loads = _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}", dimensions)
+        loads = _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}", dimensions, parameters)
         of_beams |= loads.keys() - {name}
         added |= loads
     divided = {f"{instance}{name}": line.divided for name, line in lines.items()}
@@ -71,7 +71,14 @@ def _check_name(name: object, where: str) -> None:
         raise InputError(f"{where}: found the name '{name}', which is reserved, expected another")
 
 
-def _loads(name: str, entry: object, lines: Mapping[str, Line], where: str, dimensions: object) -> dict[str, object]:
+def _loads(
+    name: str,
+    entry: object,
+    lines: Mapping[str, Line],
+    where: str,
+    dimensions: object,
+    parameters: Mapping[str, object],
+) -> dict[str, object]:
     """Return the forces of a distributed load or a contact of a beam; other forces as they are."""
     if not isinstance(entry, dict):
         return {name: entry}
@@ -81,8 +88,8 @@ def _loads(name: str, entry: object, lines: Mapping[str, Line], where: str, dime
     if kind != LOAD:
         return {name: entry}
     with located(where):
-        load = DistributedLoad.model_validate(entry)
-    return node_forces(name, load, lines, where)
+        load = DistributedLoad.model_validate(entry, context={"parameters": parameters})
+    return node_forces(name, load, lines, where, parameters)
 
 
 def read_beam(entry: Mapping[str, object], parameters: Mapping[str, object], dimensions: object, where: str) -> Beam:

@@ -51,6 +51,21 @@ class Group:
             return cast(np.ndarray, found)
         return np.array([at((1 + x) / 2) for x in places])
 
+    def integrals(self, lower: float, upper: float) -> np.ndarray:
+        """Return the integrals of the nodes' shapes between two fractions of the length, shape (p + 1,).
+
+        The shapes are the polynomials of a spectral group, and linear between the nodes of others.
+        """
+        if self.sections:
+            return _of_polynomials(self.nodes, lower, upper)
+        found = np.zeros(len(self.nodes))
+        for k in range(len(self.nodes) - 1):
+            ends = self.nodes[k : k + 2]
+            inside = np.clip((lower, upper), *ends)
+            if inside[0] < inside[1]:
+                found[k : k + 2] += _of_polynomials(ends, *inside)
+        return found
+
     @property
     def reference(self) -> int:
         """Place of the node to which displacements are relative: in the middle, or before it."""
@@ -74,6 +89,14 @@ class Group:
     def of_pairs(cls, count: int) -> Group:
         """Return elements between two nodes each, exact for small deformations, with equidistant nodes."""
         return cls(np.linspace(0, 1, count + 1), node_weights(count) / count, ())
+
+
+def _of_polynomials(nodes: np.ndarray, lower: float, upper: float) -> np.ndarray:
+    """Return the integrals of the polynomials through nodes, each 1 at one of them, between two places."""
+    points, weights = legendre.leggauss(len(nodes))
+    places = lower + (upper - lower) * (1 + points) / 2
+    values = np.vander(places, len(nodes)) @ np.linalg.inv(np.vander(nodes, len(nodes)))
+    return cast(np.ndarray, (upper - lower) / 2 * weights @ values)
 
 
 def group_sizes(start: float, end: float, count: int, turn: float) -> Iterator[tuple[float, float, int]]:

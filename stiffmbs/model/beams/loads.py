@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Mapping
 from typing import Any, Literal
 
 from pydantic import Field, field_validator
@@ -11,11 +12,16 @@ from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
 from ...reading.fields import Described
 from ...reading.files.quoted import quoted
-from .discretise import Line
+from ...reading.units import si
+from .discretise import SAME, Line
+
+PLACE = "x"
+"""Name in formulas of the distance from the start of a beam."""
+_PLACE = re.compile(rf"(?<![\w.]){PLACE}(?![\w.]|\s*\()")
 
 
 class DistributedLoad(Described):
-    """Force per length along a whole beam: an entry of the forces of a scene.
+    """Force per length along a beam or a part of it: an entry of the forces of a scene.
 
     It becomes one force for each node, with the name of the node after its own and a dot.
     """
@@ -23,8 +29,10 @@ class DistributedLoad(Described):
     type: Literal["distributed_load"] = "distributed_load"
     beam: str = Field(description="name of the beam")
     force: tuple[float | str, ...] = Field(
-        description="components per length, N/m: numbers or formulas of time and of measured quantities"
+        description="components per length, N/m: numbers or formulas of time, of measured quantities and of x, the distance from the start along the axis, m"
     )
+    first: si.Length | None = Field(None, description="x at the start of the load, m; the start of the beam by default")
+    last: si.Length | None = Field(None, description="x at the end of the load, m; the end of the beam by default")
     axes: Literal["ground", "section"] = Field(
         "ground",
         description="axes of the components: the ground's, or those of the section, which rotate with the node",
@@ -38,17 +46,33 @@ class DistributedLoad(Described):
         return force
 
 
-def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str) -> dict[str, object]:
+def node_forces(
+    name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str, parameters: Collection[str]
+) -> dict[str, object]:
     """Return the nodal forces of a distributed load, as entries of a scene.
 
-    Nodes have the same shares of the load as of the mass. Raises InputError if the load names an unknown beam.
+    Each has the load at the node times a length. The lengths of a whole interval are those that lump the mass; of a
+    part of it, they are the integrals of the shapes of the nodes. Raises InputError if the load names an unknown beam,
+    has a part beyond it, or a formula of x in a scene with a parameter of this name.
     """
+    line = _line(load.beam, lines, where)
+    if PLACE in parameters and any(isinstance(part, str) and _PLACE.search(part) for part in load.force):
+        raise InputError(
+            f"{where}.force: found a parameter '{PLACE}' of the scene, which is the distance from the start of the beam here, "
+            "expected another name of the parameter"
+        )
+    total = line.divided.length
+    first, last = 0.0 if load.first is None else load.first, total if load.last is None else load.last
+    if not 0 <= first < last <= total * (1 + SAME):
+        raise InputError(
+            f"{where}: found a load from {first:g} to {last:g} m, expected a part of the beam, 0 to {total:g} m"
+        )
     axes = {"axes": "body"} if load.axes == "section" else {}
     return {
         f"{name}.{node.name}": {
-            "type": "force", "i": f"{load.beam}.{node.name}", "force": [_times(part, node.share) for part in load.force], **axes
+            "type": "force", "i": f"{load.beam}.{node.name}", "force": [_times(part, share, node.s) for part in load.force], **axes
         }
-        for node in _line(load.beam, lines, where).nodes
+        for node, share in zip(line.nodes, line.shares(first, last).tolist(), strict=True) if share
     }  # fmt: skip
 
 
@@ -90,6 +114,8 @@ def _product(stiffness: Any, length: float) -> Any:
     return stiffness * length if type(stiffness) in (int, float) else stiffness
 
 
-def _times(component: float | str, length: float) -> float | str:
-    """Return a force from a force per length; a formula keeps its units, and a plain number is in N/m."""
-    return f"({length!r} m)*(({component}) + 0 N/m)" if isinstance(component, str) else component * length
+def _times(component: float | str, length: float, x: float) -> float | str:
+    """Return a force from a force per length at a place; a formula keeps its units, and a plain number is in N/m."""
+    if not isinstance(component, str):
+        return component * length
+    return f"({length!r} m)*(({_PLACE.sub(f'({x!r} m)', component)}) + 0 N/m)"

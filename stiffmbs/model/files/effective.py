@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 from ...errors import prefixed
 from ...reading.files.yaml_text import Content, read_yaml
+from ..parts.changes import set_later, set_now, with_shipped
 from ..parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
-from ..parts.placing import placed_in_use, set_in_instances
+from ..parts.placing import placed_in_use
 from . import expand
 from .written_scene import WrittenScene
 
@@ -17,7 +18,7 @@ Changes = Sequence[tuple[str, object]]
 
 
 def effective(written: WrittenScene) -> tuple[Content, dict[str, object]]:
-    """Return a scene as in a file, with its changes, and the changes within instances of parts, by their paths.
+    """Return a scene as in a file, with its changes, and those of entries that it repeats or that parts make, by their paths.
 
     The latter have no place in a scene file. Options are merged; of the section `options` the chosen words are left.
     """
@@ -26,10 +27,10 @@ def effective(written: WrittenScene) -> tuple[Content, dict[str, object]]:
     found, changes = placed_in_use(found, changes)
     in_parts: dict[str, object] = {}
     for path, value in changes:
-        if set_in_instances(path, found.get("use")):
+        if set_later(path, found):
             in_parts[path] = value
         else:
-            expand.set_value(found, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
+            set_now(found, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
     keep_one_grid(found, {path for path, _ in changes})
     if words := chosen["words"]:
         own: Content = {name: {word: {}} for name, word in words.items() if name in chosen["choices"]}
@@ -48,6 +49,7 @@ def chosen_options(
         chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
         merged = with_chosen(found, chosen["words"], OPTIONS)
     merged.pop(CHOOSE, None)
+    merged = with_shipped(merged, changes)
     return merged, chosen, [change for change in changes if change[0] not in words]
 
 

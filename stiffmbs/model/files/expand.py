@@ -31,10 +31,10 @@ _LOOP = re.compile(r"^\s*([^\W\d]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
 _BRACES = re.compile(r"\{([^{}]*)\}")
 
 
-def set_value(scene: Content, path: str, value: object) -> None:
+def set_value(scene: Content, path: str, value: object, named: str = "") -> None:
     """Set the value at a path such as ``bodies.cart.mass``, ``run.rtol`` or the bare name of a parameter.
 
-    Raises InputError if the path passes through a value that has no keys.
+    Raises InputError if the path passes through a value that has no keys; the message has the path, or `named`.
     """
     if path in (scene.get("parameters") or {}):
         path = f"parameters.{path}"
@@ -46,13 +46,13 @@ def set_value(scene: Content, path: str, value: object) -> None:
         elif isinstance(place, list) and parent.isdigit() and int(parent) < len(place):
             place = place[int(parent)]
         else:
-            raise InputError(f"--set {path}: found no '{'.'.join(parents[: k + 1])}' in the scene")
+            raise InputError(f"--set {named or path}: found no '{'.'.join(parents[: k + 1])}' in the scene")
     if isinstance(place, dict) and last:
         place[last] = value
     elif isinstance(place, list) and last.isdigit() and int(last) < len(place):
         place[int(last)] = value
     else:
-        raise InputError(f"--set {path}: found no such place in the scene")
+        raise InputError(f"--set {named or path}: found no such place in the scene")
 
 
 def unshared(found: object) -> Any:

@@ -15,6 +15,7 @@ from ...reading.files.unchanged import Unchanged, names_in
 from ...reading.formula.field import READ_BEFORE
 from ...reading.formula.formula import Formula
 from ...reading.units.units import Quantity
+from ..parts.changes import set_later
 from ..parts.options import CHOOSE, OPTIONS
 from ..scene import Scene
 from .expand import read_parameter, replaced_parameters, set_value, unshared
@@ -51,6 +52,8 @@ class OtherForces:
         """Return the forces that use the values; None if other elements use them too."""
         content, parameters = self._content, self._content.get(PARAMETERS) or {}
         if any(content.get(section) for section in NOT_AS_WRITTEN) or any(isinstance(v, str) for _, v in written.changes):  # fmt: skip
+            return None
+        if any(set_later(path, content) for path in (*(path for path, _ in written.changes), *self._names)):
             return None
         for path, value in written.changes:
             set_value(content, path, value)

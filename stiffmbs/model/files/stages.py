@@ -149,10 +149,13 @@ def merge_patch(old: Mapping[str, object], new: Mapping[str, object]) -> Content
 
 def _of_stage(changes: Sequence[tuple[str, object]], content: Content) -> tuple[tuple[str, object], ...]:
     """Return the changes from outside, without those of joints, forces and requests that a stage does not have."""
+    if not changes:
+        return ()
+    from ..parts.changes import set_later
 
     def is_there(path: str) -> bool:
         section, _, name = path.partition(".")
-        if section not in ("joints", "forces", "requests"):
+        if section not in ("joints", "forces", "requests") or set_later(path, content):
             return True
         return any(name == known or name.startswith(f"{known}.") for known in content.get(section) or ())
 

@@ -6,15 +6,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...elements.body import check_names, is_flexible
+from ...elements.body import check_names, is_flexible, is_surface_load
 from ...errors import InputError
 from ...reading.fields import located, mapping
 from ...reading.files.files_read import Context
+from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import Content
-from ...reading.names import MOUNT, beginnings
+from ...reading.names import MOUNT
 from ...reading.units.units import Quantity
 from ..beams.entries import with_beams
-from ..files.expand import repeat_entries, set_value
+from ..files.expand import repeat_entries
+from .changes import REPEATED, Later
 from .definitions import Definitions, definition_in_components
 from .frame import Use
 from .hard_points import WHEEL, check_hard_points
@@ -23,7 +25,6 @@ from .parameters import mounts_of, parameters_of
 from .placing import NAMED
 from .vectors import Vectors, parameters_in_components, vectors_of
 
-REPEATED = ("bodies", "states", "joints", "forces")
 MOST_NESTED = 10
 """Largest number of nested parts."""
 MOST_INSTANCES = 10_000
@@ -48,6 +49,8 @@ class Instance:
     flexible: Mapping[str, Any] = field(default_factory=dict)  # descriptions of its flexible bodies by local name
     made: Mapping[str, Sequence[str]] = field(default_factory=dict)  # local names of their bodies and joints by section
     wheel: tuple[float, ...] | None = None  # centre of the wheel of a suspension in the part's frame, m
+    own: frozenset[str] = frozenset()  # names of the parameters of the part
+    vectors: Vectors = field(default_factory=dict)  # its vectors
 
     @property
     def where(self) -> str:
@@ -72,13 +75,12 @@ class Instance:
 class Instances:
     """Reader of the instances of a scene, in order from outer to inner.
 
-    `context`: parameters, tables and folder of the scene. `changes`: values set in instances from outside; applied changes are
-    removed from the list. `words`: choices of the scene. `dimensions`: 2 or 3.
+    `context`: parameters, tables and folder of the scene. `later`: values set in instances from outside. `words`: choices of the scene. `dimensions`: 2 or 3.
     """
 
     context: Context
     definitions: Definitions
-    changes: list[tuple[str, object]]
+    later: Later
     words: Mapping[str, str]
     dimensions: int
     values: int = 0
@@ -92,8 +94,13 @@ class Instances:
         Raises InputError for a part that does not exist, uses itself, or cannot be read.
         """
         where = f"{outer.where}.use" if outer else "use"
-        for name, entry in repeat_entries(where, mapping(used, where, "names to parts"), parameters).items():
+        written = mapping(used, where, "names to parts")
+        for name, entry in repeat_entries(where, written, parameters).items():
             _check_name(where, name)
+            full = f"{outer.name}.{name}" if outer else name
+            if outer and name not in written:
+                self.later.set_in_use(f"{where}.{name}", entry)
+            self.later.set_in_use(f"use.{full}", entry)
             use, own = self.definitions.use(f"{where}.{name}", entry, parameters)
             above = [*_above(outer)]
             if use.part in (one.part for one in above):
@@ -101,9 +108,7 @@ class Instances:
             if depth >= MOST_NESTED:
                 raise InputError(f"{where}.{name}: found parts nested deeper than {MOST_NESTED}, expected fewer")
             words = {**(outer.words if outer else self.words), **own}
-            self._add(
-                f"{outer.name}.{name}" if outer else name, use, words, f"{where}.{name}", parameters, outer, depth
-            )
+            self._add(full, use, words, f"{where}.{name}", parameters, outer, depth)
 
     def refuse_unknown_choices(self, known: Iterable[str]) -> None:
         """Refuse choices of the scene that neither it nor any part in it has."""
@@ -119,7 +124,8 @@ class Instances:
         found = self.definitions.of(use.part)
         self._count(where, found)
         definition = with_chosen(found, words, f"parts.{use.part}.{OPTIONS}")
-        self._set(name, definition)
+        for section in (*NAMED, "markers"):
+            self.later.set(f"{section}.{name}", definition.get(section))
         vectors = vectors_of(definition.get("parameters"), f"parts.{use.part}.parameters")
         use = use.model_copy(
             update={"parameters": parameters_in_components(use.parameters, vectors, f"{where}.parameters")}
@@ -139,6 +145,16 @@ class Instances:
             section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
             for section in (*NAMED, "markers") if definition.get(section) is not None
         }  # fmt: skip
+        for section, entries in sections.items():
+            repeated = set(entries) - set(mapping(definition[section], section)) if isinstance(entries, dict) else set()
+            self.later.set(f"parts.{use.part}.{section}", entries, repeated, vectors)
+            self.later.set(f"{section}.{name}", entries, repeated, vectors)
+        for each, entry in mapping(sections.get("forces") or {}, f"parts.{use.part}.forces").items():
+            if is_surface_load(entry):
+                raise InputError(
+                    f"parts.{use.part}.forces.{each}: found a surface load in a part, expected it among the forces of the scene, "
+                    f"with the name that the body has there: {name}.{quoted(str(entry.get('body')))}"
+                )
         sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.", f"{name}.")
         try:
             sections, flexible, made = self._without_flexible(sections, f"parts.{use.part}.bodies", own)
@@ -149,7 +165,10 @@ class Instances:
         _check_sections(use.part, sections, inner, vectors)
         mounts = mounts_of(definition.get("mounts"), use, where)
         self._count(where, sections)
-        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words, flexible, made, wheel)
+        names = frozenset(mapping(definition.get("parameters") or {}, f"parts.{use.part}.parameters"))
+        instance = Instance(
+            name, use.part, use, sections, own, outer, inner, mounts, words, flexible, made, wheel, names, vectors
+        )
         self.found.append(instance)
         if used:
             self.read(used, own, instance, depth + 1)
@@ -180,17 +199,6 @@ class Instances:
         self.values += _size(found, MOST_VALUES)
         if self.values > MOST_VALUES:
             raise InputError(f"{where}: found parts of more than {MOST_VALUES} values in all, expected fewer")
-
-    def _set(self, instance: str, definition: dict[str, object]) -> None:
-        """Apply the changes from outside to a definition."""
-        for change in list(self.changes):
-            path, value = change
-            section, _, rest = path.partition(".")
-            entries = definition.get(section)
-            own = rest.removeprefix(f"{instance}.")
-            if isinstance(entries, dict) and own != rest and any(start in entries for start, _ in beginnings(own)):
-                set_value(definition, f"{section}.{own}", value)
-                self.changes.remove(change)
 
 
 def _above(instance: Instance | None) -> Iterator[Instance]:

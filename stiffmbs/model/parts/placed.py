@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,8 @@ from ...reading.formula.variables import meant_within
 from ...reading.marker import MarkerReference
 from ...reading.names import GROUND, MOUNT, Names
 from ...reading.units.units import Quantity, in_text
+from .as_described import AsDescribed
+from .changes import Later
 from .definitions import Definitions, shipped_parts
 from .frame import Use
 from .hard_points import check_left_and_right, check_sides
@@ -42,29 +44,29 @@ SECTIONS = ("markers", *NAMED)
 
 
 def with_parts(
-    raw: dict[str, object], scene: type[Scene], context: Context, changes: Sequence[tuple[str, object]]
+    raw: dict[str, object], scene: type[Scene], context: Context, later: Later
 ) -> tuple[dict[str, object], dict[str, object]]:
     """Return a scene with its ``use`` expanded, and its validation context.
 
     The scene is as written, with repeated entries expanded; its type is that of the plane or of space. The context
-    holds parameters, tables and variables. The changes are values, by their paths, set in instances of parts.
-    InputError if a part cannot be read or placed.
+    holds parameters, tables and variables. `later`: values set in instances of parts from outside. InputError if a part cannot be read or placed.
     """
     raw = {key: dict(value) if isinstance(value, dict) else value for key, value in raw.items()}
     parts, used = raw.pop("parts", None), raw.pop("use", None)
-    left = list(changes)
     instances = Instances(
         context,
         Definitions(parts, _frame_kind(scene)[0]),
-        left,
+        later,
         context["words"],
         scene.model_fields["dimensions"].default,
     )
     if used is not None:
         instances.read(used, context["parameters"])
     instances.refuse_unknown_choices(context["choices"])
-    for path, _ in left:
+    for path in later.unused():
         places = [f"{section}.{name}" for one in instances.found for section in NAMED for name in one.names(section)]
+        places += [f"{section}.{name}" for section in NAMED for name in _keys(raw.get(section))]
+        places += [f"use.{one.name}.parameters" for one in instances.found]
         near = did_you_mean(path.rpartition(".")[0], places)
         raise InputError(f"--set {path}: found no such place in the scene{near}")
     bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
@@ -91,7 +93,7 @@ def with_parts(
     for instance in instances.found:
         placed.add(instance)
     check_sides((one.name, one.wheel, *placed.mounts[one.name]) for one in instances.found if one.wheel is not None)
-    return raw, context
+    return raw, {**context, "of_parts": AsDescribed(placed.described) if placed.described else None}
 
 
 def _keys(found: object) -> list[str]:
@@ -139,6 +141,8 @@ class _Placed:
     context: Context
     mounts: dict[str, tuple[str, Any]] = field(default_factory=dict)
     """Body that each instance is mounted on, and its frame in that body's axes."""
+    described: dict[str, tuple[Instance, Mapping[str, Any]]] = field(default_factory=dict)
+    """Instances with their sections before these are placed."""
 
     def add(self, instance: Instance) -> None:
         """Add all entries of an instance to the scene."""
@@ -156,6 +160,9 @@ class _Placed:
         for name, described in instance.flexible.items():
             self._add_flexible(instance, name, described, in_ground)
         found = self._read(instance, names)
+        sections = {section: dict(getattr(found, section)) for section in SECTIONS}
+        sections["bodies"] |= instance.flexible
+        self.described[instance.name] = instance, sections
         if instance.part in shipped_parts():  # their frames have y to the left
             bodies = {name: body for name, (body, _) in further.items() if body != GROUND}
             to_left = in_ground.turned((0.0, 1.0, 0.0))

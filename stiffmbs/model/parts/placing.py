@@ -1,8 +1,7 @@
-"""Parts placed in the section ``parts``, and changes of instances from outside."""
+"""Parts placed in the section ``parts``."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from ...errors import InputError
@@ -47,16 +46,3 @@ def as_written(message: str, parts: object) -> str:
 
 def _is_placed(entry: object) -> bool:
     return isinstance(entry, dict) and isinstance(entry.get("use"), str)
-
-
-def set_in_instances(path: str, used: object) -> bool:
-    """Return True for the path of an entry of an instance of a part: ``bodies.front.left.arm.mass``."""
-    section, _, rest = path.partition(".")
-    if section not in (*NAMED, "markers") or not isinstance(used, dict):
-        return False
-    return any(re.match(rf"{_any_number(str(name))}\.", rest) for name in used)
-
-
-def _any_number(name: str) -> str:
-    """Return a regular expression for the name of a repeated entry."""
-    return ".+?".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", name))

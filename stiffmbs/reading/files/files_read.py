@@ -49,7 +49,7 @@ def record(digests: Mapping[str, str]) -> None:
 
 
 def file_beside(context: Context, name: str | Path) -> Path:
-    """Return the path of a file that a scene names, relative to the folder of the scene."""
+    """Return the path of a file that a scene names; names in included files are already seen from the folder of the scene."""
     return Path(context.get(FOLDER) or "") / name
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
+from .names_of_files import from_folder
 from .quoted import quoted, written
 from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text
@@ -50,7 +51,7 @@ def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Call
     found = read_yaml_file(text, source, file)
     if isinstance(found, dict):
         own = (file.resolve(),) if file else ()
-        found = _Including(sources).whole(found, source, file.parent if file else Path(), own, ())
+        found = _Including(sources, file.parent if file else Path()).whole(found, source, Path(), own, ())
     return found, sources.line
 
 
@@ -72,6 +73,7 @@ class _Place:
 @dataclass
 class _Including:
     sources: Sources
+    folder: Path  # of the scene; all other folders are seen from it
 
     def whole(
         self, found: dict[str, object], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
@@ -96,12 +98,13 @@ class _Including:
         merged: dict[str, object] = {}
         owners: dict[tuple[object, ...], str] = {}
         for name in _listed(found[INCLUDE], where):
-            file = folder / name
-            _add(merged, self._content(file, where, within, path), str(file), owners, where)
+            file = self.folder / folder / name
+            _add(merged, self._content(folder / name, where, within, path), str(file), owners, where)
         _add(merged, {key: value for key, value in found.items() if key != INCLUDE}, source, owners, where)
         return merged
 
-    def _content(self, file: Path, where: _Place, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, object]:
+    def _content(self, name: Path, where: _Place, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, object]:
+        file = self.folder / name
         if file.resolve() in within:
             raise InputError(f"{where}: found '{quoted(str(file))}', which includes itself, expected no circle")
         if len(self.sources.texts) > MOST_FILES:
@@ -114,7 +117,8 @@ class _Including:
             raise InputError(
                 f"{file}: found {'nothing' if found is None else 'other content'}, expected a mapping of sections"
             )  # no quote
-        return self.whole(found, str(file), file.parent, (*within, file.resolve()), path)
+        found = from_folder(found, name.parent)
+        return self.whole(found, str(file), name.parent, (*within, file.resolve()), path)
 
 
 def _check_file(file: Path, where: _Place) -> None:

@@ -14,7 +14,8 @@ from ...elements.spatial.orientation import IDENTITY, conjugate, rotated
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.files.effective import chosen_options
-from ...model.files.expand import set_value, unshared
+from ...model.files.expand import unshared
+from ...model.parts.changes import set_later, set_now
 from ...model.parts.placing import placed_in_use
 from ...model.read_scene import made_scene
 from ...model.scene import Scene
@@ -221,8 +222,8 @@ def _set_parts_and_run(content: Content, changes: Iterable[tuple[str, object]]) 
     for path, value in changes:
         section, _, name = path.partition(".")
         added = section == "parameters" and name not in (content.get("parameters") or {})
-        if added or section in ("use", "run"):
-            set_value(content, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
+        if added or (section in ("use", "run") and not set_later(path, content)):
+            set_now(content, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
         else:
             yield path, value
 

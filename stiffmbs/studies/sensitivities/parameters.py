@@ -112,23 +112,52 @@ def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
             f"to: found '{name}'{did_you_mean(name, scene.parameters)}, expected a parameter of the scene ({known}) or a path such as "
             "forces.spring.stiffness"
         )
-    at: object = scene
-    k = 0
-    if parts[0] == "bodies" and any(not body.rigid for body in scene.bodies.values()):
+    places, whole = _in_parts(scene, name) or _walked(_sections(scene, parts[0]), parts, name)
+    return ".".join(parts[: len(parts) - len(places)]), places, whole
+
+
+def _sections(scene: Scene, section: str) -> object:
+    """Return the scene, or for bodies a mapping with the descriptions of flexible bodies."""
+    if section == "bodies" and any(not body.rigid for body in scene.bodies.values()):
         from ...model.flexible import described_bodies
 
-        at, k = {**described_bodies(scene.bodies), **scene.bodies}, 1
+        return {"bodies": {**described_bodies(scene.bodies), **scene.bodies}}
+    return scene
+
+
+def _in_parts(scene: Scene, name: str) -> tuple[tuple[int, ...], Any] | None:
+    """Return what `_walked` returns for a path of a part, or of all uses of a part; None for another path."""
+    described = scene.of_parts.at(name) if scene.of_parts else ()
+    found = [_walked(at, rest.split("."), name) for at, rest in described]
+    numbers = {_part(whole, places) for places, whole in found}
+    if len(numbers) > 1:
+        values = ", ".join(f"{value:g}" for value in sorted(numbers))
+        raise InputError(
+            f"to: found '{name}', which has the values {values} in the uses of the part, expected a path of one use"
+        )
+    if not found and name.startswith("parts."):
+        raise InputError(
+            f"to: found '{name}', which no use of a part takes, expected a path of a use, such as use.left.parameters.L"
+        )
+    if any(each != found[0] for each in found):  # vectors that are equal in this component
+        return (), numbers.pop()
+    return found[0] if found else None
+
+
+def _walked(at: object, parts: Sequence[str], name: str) -> tuple[tuple[int, ...], Any]:
+    """Return the trailing indices of a path, and the object at the path without them."""
+    k = 0
     while k < len(parts):
         if parts[k].isdigit() and isinstance(at, list | tuple):
             places = tuple(map(int, parts[k:]))
             if not _is_number(_part(at, places, name)):
                 raise InputError(f"to: found '{name}', which is no number, expected one; add a place such as .0")
-            return ".".join(parts[:k]), places, at
+            return places, at
         at, k = _next(at, parts, k, name)
     if not _is_number(at):
         what = "a vector; add a place such as .0" if isinstance(at, list | tuple) else "no number"
         raise InputError(f"to: found '{name}', which is {what}, expected a number")
-    return name, (), at
+    return (), at
 
 
 def _is_number(found: object) -> bool:

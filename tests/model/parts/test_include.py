@@ -1,12 +1,20 @@
 """Scenes that include other files."""
 
 import io
+import json
+import re
 import sys
+from pathlib import Path
 
 import pytest
 
 import stiffmbs
 from stiffmbs.errors import InputError
+from stiffmbs.model.schema import scene_schema
+from stiffmbs.reading.files.names_of_files import PLACES
+from tests.flexible_bodies.bars import mesh_of_bar
+
+ROOT = Path(__file__).parents[3]
 
 BODIES = "bodies:\n  bar: {mass: m, inertia: 1, markers: {end: {point: [1, 0]}}}\n"
 JOINTS = "joints:\n  pin: {type: revolute, i: bar.end, j: ground}\n"
@@ -93,3 +101,112 @@ def test_parts_include_their_definitions(write):
         InputError, match=r"line 2 of .*b.yaml, parts.p.bodies.bar.mass: found 'm', which is in m.*\(in a\)"
     ):
         stiffmbs.load_scene(path)
+
+
+def _tyre(tmp_path, place):
+    text = (ROOT / "examples" / "car.tir").read_text()
+    (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / place).write_text(text)
+
+
+STL = (
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+)
+WHEEL = """
+bodies:
+  wheel: {mass: 10, inertia: [1, 1, 1], geometry: [{type: mesh, file: shapes/wheel.stl}]}
+  blade: {type: flexible, mesh: blade.vtu, units: {length: mm}, material: {E: 2e11, nu: 0.3, density: 7800}, modes: 2,
+          interfaces: {root: {plane: {point: [0, 0, 0], normal: [1, 0, 0]}}}}
+forces:
+  tyre: {type: magic_formula_tyre, i: wheel, properties: ../tyres/car.tir, road: {type: grid, file: road.csv}}
+"""
+GRID = "-1, 1\n0, 0, 0\n1, 0.1, 0.1\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Write a tyre, a road, a picture and a mesh next to the files that name them."""
+    _tyre(tmp_path, "tyres/car.tir")
+    for name, text in {
+        "sub/shapes/wheel.stl": STL,
+        "sub/road.csv": GRID,
+        "track.csv": GRID.replace("0.1", "0.3"),
+    }.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    mesh_of_bar("hexahedron", 2, 1).write(tmp_path / "sub" / "blade.vtu")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "main",
+    [
+        "dimensions: 3\ninclude: sub/wheel.yaml",
+        "dimensions: 3\ninclude: sub/deep/through.yaml",
+        "dimensions: 3\nparts: {p: {include: sub/wheel.yaml}}\nuse: {a: {part: p}}",
+        "dimensions: 3\ninclude: sub/parts.yaml",
+    ],
+)
+def test_names_of_files_start_from_the_folder_of_the_file_that_has_them(write, files, main):
+    path = write(
+        main=f"{main}\nroads: {{track: {{type: grid, file: track.csv}}}}",
+        sub__wheel=WHEEL,
+        sub__parts="parts: {p: {include: wheel.yaml}}\nuse: {a: {part: p}}",
+        sub__deep__through="include: ../wheel.yaml",
+    )
+    scene = stiffmbs.load_scene(path)
+    wheel, tyre = (
+        next(x for name, x in s.items() if name.endswith(e))
+        for s, e in ((scene.bodies, "wheel"), (scene.forces, "tyre"))
+    )
+    assert Path(wheel.geometry[0].file).read_text() == STL
+    assert tyre.road.file.tables[0].table[-1][1] == 0.1
+    assert any(name.endswith("blade.root") for name in scene.bodies)
+    assert scene.roads["track"].file.tables[0].table[-1][1] == 0.3
+    again = stiffmbs.load_scene(path, [(f"bodies.{next(n for n in scene.bodies if n.endswith('wheel'))}.mass", "11")])
+    assert again.bodies.keys() == scene.bodies.keys()
+
+
+def test_names_of_files_in_options_and_stages_of_included_files(write, files):
+    path = write(
+        main="dimensions: 3\ninclude: sub/all.yaml\n",
+        sub__all="bodies: {wheel: {mass: 1, inertia: [1, 1, 1]}}\n"
+        "options: {ground: {rough: {roads: {r: {type: grid, file: road.csv}}}}}\n"
+        "forces: {tyre: {type: magic_formula_tyre, i: wheel, properties: ../tyres/car.tir, road: r}}\n"
+        "stages: [{run: {duration: 1}}, {run: {duration: 1}, change: {forces: {tyre: {properties: ../tyres/car.tir}}}}]\n",
+    )
+    assert len(stiffmbs.load_scene(path).stage_scenes) == 2
+
+
+def test_absolute_names_stay_and_shared_entries_are_changed_once(write, files):
+    tyre = "&t {type: magic_formula_tyre, i: a, properties: ../tyres/car.tir, road: {type: flat}}"
+    path = write(
+        main="dimensions: 3\ninclude: sub/all.yaml",
+        sub__all="bodies: {a: &a {mass: 1, inertia: [1, 1, 1]}, b: *a}\n"
+        f"forces: {{one: {tyre}, two: {{<<: *t, i: b}}, three: *t}}\nroads: {{r: {{type: grid, file: {files / 'track.csv'}}}}}",
+    )
+    scene = stiffmbs.load_scene(path)
+    assert len(scene.forces) == 3
+    assert scene.roads["r"].file.tables[0].table[-1][1] == 0.3
+
+
+def test_all_fields_with_names_of_files_are_known():
+    """A new field whose text is the name of a file belongs to `PLACES`."""
+    known = {path[-1] for path in PLACES}
+    assert set(_named(scene_schema())) - {"include"} == known
+
+
+def _named(found):
+    if isinstance(found, list):
+        for part in found:
+            yield from _named(part)
+    if isinstance(found, dict):
+        for key, value in found.get("properties", {}).items() if isinstance(found.get("properties"), dict) else ():
+            described = json.dumps(value.get("description", "")) if isinstance(value, dict) else ""
+            if re.search(
+                r"file of (a mesh|K|M|the nodes|CalculiX)|a file \.|name of a\w* .*file|archive \(|files whose",
+                described,
+            ):
+                yield key
+        for value in found.values():
+            yield from _named(value)

@@ -60,7 +60,7 @@ class MagicFormulaTyre(Tyre):
     reflected = {"j": "z", "hand": "angle"}
 
     properties: AnyProperties = Field(
-        description="the name of a property file (.tir) in the folder of the scene, or coefficients"
+        description="the name of a property file (.tir), relative to the folder of the file that names it, or coefficients"
     )
     hand: si.NumberNotZero = Field(1.0, description="-1 mounts the tyre of the file on the other side of the car")
     side: Literal["left", "right"] | None = Field(
