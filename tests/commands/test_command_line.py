@@ -128,10 +128,16 @@ def test_a_parameter_may_be_added_with_what_uses_it(in_folder):
     assert json.loads(result.output)["channels"]["rail.fy"]["first"] > 40 * 9.81
 
 
-def test_one_of_a_repeated_entry_cannot_be_set_alone(examples):
-    result = stiffmbs("check", examples / "chain.yaml", "--set", "bodies.link3.mass=5")
+def test_one_of_a_repeated_entry_is_set_alone(examples):
+    how = "equilibrium", examples / "chain.yaml", "--json", "--set", "N=3"
+    before, after = (
+        json.loads(stiffmbs(*how, *more).output)["channels"]["pin1.fy"]
+        for more in ((), ("--set", "bodies.link3.mass=5"))
+    )
+    assert after - before == pytest.approx(4.9 * 9.81)
+    result = stiffmbs(*how, "--set", "bodies.link4.mass=5")
     assert result.exit_code == 2
-    assert "bodies.link3: found a name that a repeated entry makes too" in result.output
+    assert "--set bodies.link4.mass: found no such place in the scene (did you mean 'bodies.link" in result.output
 
 
 def test_a_scheme_can_be_chosen_and_a_setting_without_effect_is_told(in_folder):
