@@ -42,6 +42,7 @@ class StateErrors:
     - `lost`: mask of nodes with errors too large for linear equations; if there is one, `q` and `u` are those of the integrator.
     - `restarts`: times at which the integrator started again, and of the events before, where the state is on either side, s.
     - `fast`: motions that the start excites and the steps do not follow.
+    - `of_bdf`: True if the nodes are ends of steps of bdf.
     """
 
     t: np.ndarray
@@ -55,6 +56,7 @@ class StateErrors:
     lost: np.ndarray
     restarts: np.ndarray
     fast: FastMotions | None = None
+    of_bdf: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,8 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         after = np.arange(starts[k + 1] + 1, starts[min(k + 2, len(pieces))])
         for rows in (before[::-1], after):
             left_out[beyond_event(dynamics, pieces[k].fired, rows, t, (q, u), (q_better, u_better))] = True
-    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out, lost, restarts, fast)
+    of_bdf = pieces[0].points == 1
+    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out, lost, restarts, fast, of_bdf)
 
 
 def _is_free(system: System) -> bool:

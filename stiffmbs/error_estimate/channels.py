@@ -9,6 +9,7 @@ from itertools import permutations
 
 import numpy as np
 
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
@@ -20,6 +21,7 @@ from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors
 from .coordinates import as_rows, displaced
+from .defects import windows
 from .parameters import ESTIMATE
 from .vibrations import FastMotions
 
@@ -72,7 +74,7 @@ class _Reports:
 class _Nodes:
     """States of a run at the nodes of its estimate, their errors (dq, du, ds), and the values and errors of the channels.
 
-    `neighbours`: mask of the intervals between nodes in which none was left out.
+    `neighbours`: mask of the intervals between nodes in which none was left out. `of_bdf`: True if they are ends of steps of bdf.
     """
 
     t: np.ndarray
@@ -82,6 +84,7 @@ class _Nodes:
     values: np.ndarray
     errors: np.ndarray
     neighbours: np.ndarray
+    of_bdf: bool
 
     def interpolated(self, t: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
         """Return the errors of states at some times by those at the two nodes next to each, and at two more where steps are even."""
@@ -94,15 +97,32 @@ class _Nodes:
         cubic[cubic] = even & (self.pieces[inside[:, 0]] == self.pieces[inside[:, 3]])
         found = np.empty((len(t), self.of_states.shape[1]))
         for chosen, of in ((cubic, rows), (~cubic, rows[:, 1:3])):
-            found[chosen] = self._through(t[chosen], of[chosen])
+            found[chosen] = self._through(self.of_states, t[chosen], of[chosen])
         return found
 
-    def _through(self, t: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return the errors of states at times, each by the polynomial through those at some nodes, shape (n, k)."""
+    def off_curve(self, system: System, t: np.ndarray, q: np.ndarray, before: np.ndarray) -> np.ndarray:
+        """Return the distances of states with rates within steps of bdf from the curve through its steps, as errors of states.
+
+        `before`: node before each time. The interpolant of bdf has its order and only states of the past: it misses fast states,
+        which follow slow ones, by more than their errors at the ends of steps. Distances are zero where no curve is known.
+        """
+        found, states = np.zeros((len(t), self.of_states.shape[1])), system.with_rates
+        if not self.of_bdf or not len(states) or len(self.t) < ESTIMATE.points:
+            return found
+        first, unknown = windows(self.t, before, before + 1, ESTIMATE.points)
+        rows = first[:, None] + np.arange(ESTIMATE.points)
+        known = ~unknown & (self.pieces[rows[:, 0]] == self.pieces[rows[:, -1]])
+        known &= (t > self.t[before]) & (t < self.t[before + 1])
+        curve = self._through(self.q[:, states], t[known], rows[known])
+        found[known, -len(states) :] = q[np.ix_(known, states)] - curve
+        return found
+
+    def _through(self, values: np.ndarray, t: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return values at times, each by the polynomial through those at some nodes, shape (n, k)."""
         nodes, weights = self.t[rows], np.ones(rows.shape)
         for i, j in permutations(range(rows.shape[1]), 2):
             weights[:, i] *= (t - nodes[:, j]) / (nodes[:, i] - nodes[:, j])
-        return np.asarray(np.einsum("nk,nkf->nf", weights, self.of_states[rows]))
+        return np.asarray(np.einsum("nk,nkf->nf", weights, values[rows]))
 
     @cached_property
     def pieces(self) -> np.ndarray:
@@ -139,7 +159,7 @@ def channel_errors(
     of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
     errors, neighbours = differences(names, values, better), np.diff(np.flatnonzero(kept)) == 1
     of_outputs: OfOutputs = _AtOutputs(
-        reports, _Nodes(at.t, at.q, at.u, of_states, values, errors, neighbours), channels
+        reports, _Nodes(at.t, at.q, at.u, of_states, values, errors, neighbours, found.of_bdf), channels
     ).errors
     if found.fast:
         system = subsystem.dynamics.system if subsystem else dynamics.system
@@ -184,6 +204,7 @@ class _AtOutputs:
     velocity, as friction does. Stiff forces need errors of states that are in balance, which interpolated ones are not: then those
     of the channels are interpolated. This is so where the errors of a node's neighbours give its channel an error that is wrong by
     its size. Next to an event, states without their errors lie on its other side: the smaller of both errors is not the jump there.
+    Errors of the interpolation of states within steps are added.
     """
 
     reports: _Reports
@@ -192,17 +213,32 @@ class _AtOutputs:
 
     def errors(self, block: slice) -> np.ndarray:
         """Return the errors at some output times, shape (channels, n)."""
-        nodes, run = self.nodes, self.reports.run
-        t = run.t[block]
+        nodes, t = self.nodes, self.reports.run.t[block]
         line = np.array([np.interp(t, nodes.t, each) for each in nodes.errors])
         if self._hold is None:
             return line
         first = np.clip(np.searchsorted(nodes.t, t, side="right") - 1, 0, len(nodes.t) - 2)
-        values = self.reports.stacked(self.channels, block)
+        found = self._from_nodes(block, first, line)
+        off_curve = nodes.off_curve(self.reports.dynamics.system, t, self.reports.run.q[block], first)
+        if not off_curve.any():
+            return found
         try:
-            direct = self.reports.errors(values, t, run.q[block], run.u[block], nodes.interpolated(t, first, first + 1))
+            return np.asarray(found + self._by(block, off_curve))
+        except SolverError:
+            return found
+
+    def _by(self, block: slice, of_states: np.ndarray) -> np.ndarray:
+        """Return the errors at some output times by errors of the states there. Raises SolverError if a state has no solution."""
+        run, values = self.reports.run, self.reports.stacked(self.channels, block)
+        return self.reports.errors(values, run.t[block], run.q[block], run.u[block], of_states)
+
+    def _from_nodes(self, block: slice, first: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """Return the errors at some output times from those at the nodes, `first` being the node before each, and `line` between them."""
+        try:
+            direct = self._by(block, self.nodes.interpolated(self.reports.run.t[block], first, first + 1))
         except SolverError:
             return line
+        assert self._hold is not None
         return np.where(self._hold[:, first] | (np.abs(direct) < np.abs(line)), direct, line)
 
     @cached_property

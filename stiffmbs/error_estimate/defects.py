@@ -109,7 +109,7 @@ def nodes_of_bdf(t: np.ndarray) -> np.ndarray:
     return np.append(0, 1 + rows[~equals_next | (number % 2 == 1)])
 
 
-def _windows(t: np.ndarray, begin: np.ndarray, end: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
+def windows(t: np.ndarray, begin: np.ndarray, end: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the first row of the polynomial from row `begin` to row `end` of each step, and a mask of those without even steps.
 
     The step is in the middle of its polynomial if the steps there are even, otherwise as near to it as possible.
@@ -135,7 +135,7 @@ def curve_of_bdf(of: Points, nodes: np.ndarray) -> tuple[Curve, np.ndarray]:
     curve = Curve.of_ends(t[ends], of.states[ends], of.exact[ends])
     if len(t) < ESTIMATE.points:
         return curve, np.zeros(len(ends), dtype=bool)
-    first, uneven = _windows(t, ends[:, 0], ends[:, 1], ESTIMATE.points)
+    first, uneven = windows(t, ends[:, 0], ends[:, 1], ESTIMATE.points)
     window = first[~uneven, None] + np.arange(ESTIMATE.points)
     even = Curve.through(t[window], of.states[window], *t[ends[~uneven]].T)
     ours, theirs = curve.coefficients.shape[1], even.coefficients.shape[1]

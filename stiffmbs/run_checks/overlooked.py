@@ -5,7 +5,7 @@ output times in one step, the mean of their accelerations times the interval is 
 the difference is small, and errors within the tolerance cause a limited number of tolerances. A force that acts within
 the step only, and at an output time, exceeds both. So does half a period of a vibration within one step of a high order:
 the interval is solved again from its first output time, and only if the velocities at its end differ, an event was missed.
-Velocities that joints and drives prescribe follow no force, so that differences in them are left out.
+In strong damping, errors of velocities within a step explain large accelerations, which then show no event. Velocities that joints and drives prescribe follow no force, so that differences in them are left out.
 """
 
 from __future__ import annotations
@@ -96,6 +96,9 @@ def overlooked(
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if len(found) <= RUN_CHECKS.most_instants:
         found = found[[_ends_elsewhere(rows, int(pairs[k]), tolerance[k], again) for k in found]]
+    found = found[
+        [not _is_of_damping(dynamics, rows, int(pairs[k]), off[k], over_step[k] > 1, settings) for k in found]
+    ]
     if not len(found):
         return None
     _, first = np.unique(number[found], return_index=True)
@@ -110,6 +113,14 @@ def _ends_elsewhere(rows: OutputRows, k: int, tolerance: np.ndarray, again: Solv
     """Return True if a solution from row `k` on has velocities at the next row that differ by more than the tolerance."""
     found = again(k)
     return found is None or not (np.abs(found - rows.u[k + 1]) <= tolerance).all()
+
+
+def _is_of_damping(
+    dynamics: Dynamics, rows: OutputRows, k: int, off: np.ndarray, large: np.ndarray, settings: RunSettings
+) -> bool:
+    """Return True if errors of velocities explain the large ones of the accelerations `off` by which row `k` contradicts the next."""
+    explained = np.fmax(*(_of_errors(dynamics, rows, row, settings, 0.0) for row in (k, k + 1)))
+    return bool((np.abs(off) <= explained)[large].all())
 
 
 def contradicting_rows(
@@ -211,7 +222,7 @@ def _judged(
     groups = [
         (group, k)
         for group, k in groups
-        if (np.abs(off[k]) > np.fmax(least[k], _of_errors(found, rows, k, settings))).any()
+        if (np.abs(off[k]) > np.fmax(least[k], _of_errors(found.dynamics, rows, k, settings, RUN_CHECKS.slight))).any()
     ]
     if not groups:
         return None
@@ -267,12 +278,15 @@ def _neighbours(places: np.ndarray, steps: np.ndarray) -> list[np.ndarray]:
     return np.split(places, ends) if len(places) else []
 
 
-def _of_errors(found: WholeSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
-    """Return the change of accelerations at a row by errors that a step may have; stiff forces make it large."""
-    dynamics, state = found.dynamics, np.concatenate([rows.q[k], rows.u[k]])
-    slight = np.repeat([RUN_CHECKS.slight, RUN_CHECKS.slight_velocity], [rows.q.shape[1], rows.u.shape[1]])
+def _of_errors(dynamics: Dynamics, rows: OutputRows, k: int, settings: RunSettings, of_positions: float) -> np.ndarray:
+    """Return the change of accelerations at a row by errors that a step may have; stiff forces make it large.
+
+    `of_positions`: errors of positions, in tolerances.
+    """
+    state = np.concatenate([rows.q[k], rows.u[k]])
+    slight = np.repeat([of_positions, RUN_CHECKS.slight_velocity], [rows.q.shape[1], rows.u.shape[1]])
     errors = slight * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
-    states = np.vstack([state, state + np.diag(errors)])
+    states = np.vstack([state, state + np.diag(errors)[errors > 0.0]])
     q, u = np.split(states, [dynamics.system.n_q], axis=1)
     accelerations = dynamics.report(np.full(len(states), rows.t[k]), q, u, False).acceleration
-    return np.abs(accelerations[1:] - accelerations[0]).sum(axis=0)
+    return np.asarray(np.abs(accelerations[1:] - accelerations[0]).sum(axis=0))

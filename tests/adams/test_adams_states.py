@@ -245,3 +245,22 @@ def test_all_faults_of_a_dataset_are_told_at_once():
         match=r"found unsupported statements: FLEX_BODY/1.*JOINT/2: found no J.*SFORCE/1: found no kind",
     ):
         run(SLIDER + "FLEX_BODY/1\nJOINT/2, REVOLUTE, I=21\nSFORCE/1, I=21, J=10, FUNCTION=1\n")
+
+
+def test_a_variable_of_a_rate_that_depends_on_it_is_solved():
+    """V = D'/2 + 1 and D' = V - D, so that V = 2 - D and D' = 2 - 2 D: each was substituted into the other without end."""
+    text = "DIFF/1, IC=0, FUNCTION=VARVAL(1)-DIF(1)\nVARIABLE/1, FUNCTION=0.5*DIF1(1)+1\nREQUEST/1, F2=VARVAL(1)\\F3=DIF1(1)\n"
+    found = run(SLIDER + text, duration=1e-3)
+    state = 1 - np.exp(-2e3 * found.time)
+    np.testing.assert_allclose(found["REQUEST_1.f2"], 2 - state, atol=1e-6)
+    np.testing.assert_allclose(found["REQUEST_1.f3"], 2 - 2 * state, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "text", ["DIFF/1, IC=0, FUNCTION=DIF1(1)/2\n", "DIFF/1, IC=0, FUNCTION=DIF1(2)\nDIFF/2, IC=0, FUNCTION=DIF1(1)\n"]
+)
+def test_a_rate_that_contains_itself_is_refused(text):
+    with pytest.raises(
+        stiffmbs.InputError, match=r"DIFF/1: found DIF1\(\d\) in the rate of DIFF/\d, expected IMPLICIT"
+    ):
+        read_adams(UNITS + SLIDER + text + "END\n")

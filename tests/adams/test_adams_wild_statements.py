@@ -219,3 +219,18 @@ def test_what_another_file_has_wrong_is_named(tmp_path, other, said):
 def test_commands_without_files_are_those_of_the_text():
     with pytest.raises(InputError, match=r"line 1, FILE/COMMAND: found COMMAND = other.acf"):
         read_commands("FILE/COMMAND=other.acf\n")
+
+
+@pytest.mark.parametrize("other", ["F2=TIME", "VARIABLES=1", "FUNCTION=USER(1)"])
+def test_a_request_of_markers_and_of_functions_is_refused(other):
+    """The functions were left out without a note."""
+    with pytest.raises(InputError, match=f"REQUEST/3: found FORCE and {other.split('=')[0]}, expected one of them"):
+        read_adams(f"{BODY}VARIABLE/1, FUNCTION=TIME\nREQUEST/3, FORCE, I=20, J=10, {other}\nEND\n")
+
+
+@pytest.mark.parametrize("function", ["POLY(TIME,0)", "CHEBY(TIME,0)", "FORSIN(TIME,0,1)", "FORCOS(TIME,0,1)"])
+def test_a_series_without_a_coefficient_is_refused(function):
+    """The error was one of Python, IndexError."""
+    name = function.partition("(")[0]
+    with pytest.raises(InputError, match=f"SFORCE/1: found \\d arguments of {name} in .* expected another number"):
+        read_adams(f"{BODY}SFORCE/1, TRANSLATION, I=21, J=10, FUNCTION={function}\nEND\n")

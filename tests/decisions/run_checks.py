@@ -181,7 +181,10 @@ def velocity_within_tolerances():
     dynamics = Record(system=system, state=None)
 
     def accepted(tolerances):
-        with patch.multiple(overlooked, absolute_tolerances=lambda *_: np.array([1e-6]), acting=lambda *_: ""):
+        replaced = {
+            "absolute_tolerances": lambda *_: np.array([1e-6]), "acting": lambda *_: "", "_of_errors": lambda *_: np.zeros(1),
+        }  # fmt: skip
+        with patch.multiple(overlooked, **replaced):
             rows, steps = rows_of(1e-6 * tolerances, 0.0), Record(step_times=STEPS)
             found = overlooked.overlooked(dynamics, rows, steps, SETTINGS, nothing)
         return found is None
@@ -232,7 +235,7 @@ def change_by_errors(of):
     )  # fmt: skip
     rows = Record(q=np.zeros((1, 1)), u=np.zeros((1, 1)), t=np.zeros(1))
     with patch.object(overlooked, "absolute_tolerances", lambda *_: np.ones(2)):
-        return overlooked._of_errors(Record(dynamics=dynamics), rows, 0, SETTINGS)[0]
+        return overlooked._of_errors(dynamics, rows, 0, SETTINGS, overlooked.RUN_CHECKS.slight)[0]
 
 
 def instants_of_a_dip():

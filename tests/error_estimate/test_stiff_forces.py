@@ -4,11 +4,12 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs.analyses.load_scene import load_scene
 from tests.conftest import EXAMPLES
-from tests.error_estimate.test_against_truth import ratio
+from tests.error_estimate.test_against_truth import ratio, solved
 from tests.solve.test_stiff_reactions import REACTIONS, four_bar
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 
@@ -51,6 +52,25 @@ def test_defects_of_radau_beside_stiff_bushings(scene, rtol):
     names = (name for name in found if name.endswith((".angle", ".omega")) or name in (*REACTIONS, "bearing.fx"))
     for name in names:
         assert 0.4 < ratio(found, name, truth[name]) < 2.5, name
+
+
+@pytest.mark.parametrize(("size", "rtol"), [(1e5, 1e-4), (1e5, 1e-8), (1.0, 1e-4)])
+def test_a_fast_state_has_the_errors_of_outputs_within_steps(size, rtol):
+    """A pressure follows its flow within 10 us: between the steps of bdf its bar was 1/70 of the error."""
+    scene = f"""
+        gravity: [0, 0]
+        bodies: {{b: {{mass: 1, inertia: 1}}}}
+        joints: {{rail: {{type: prismatic, i: b, j: ground}}}}
+        states: {{p: {{rate: "1e5*({size}*(sin(3*t) - 0.2*b.vx) - p - p^3/{size**2})", start: 0}}}}
+        forces: {{push: {{type: force, i: b, force: ["p/{size} - 4*b.x", 0]}}}}
+    """
+    found = solved(scene, solver="bdf", rtol=rtol, duration=5.0, points=317)
+    truth = solve_ivp(
+        lambda t, y: [y[1], y[2] - 4 * y[0], 1e5 * (np.sin(3 * t) - 0.2 * y[1] - y[2] - y[2] ** 3)],
+        (0, 5), [0, 0, 0], "Radau", found.time, rtol=1e-11, atol=1e-13,
+    ).y  # fmt: skip
+    for name, values in (("p", size * truth[2]), ("push.fx", truth[2] - 4 * truth[0]), ("b.x", truth[0])):
+        assert 0.7 < ratio(found, name, values) < 4, name  # a polynomial over a step that doubles has an error, too
 
 
 def test_every_block_of_a_run_may_be_taken_step_by_step():

@@ -17,19 +17,19 @@ def _shf(x: ast.expr, x0: ast.expr, a: ast.expr, w: ast.expr, *rest: ast.expr) -
     return total([product(a, call("sin", difference(product(w, difference(x, x0)), phi))), b])
 
 
-def _poly(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
+def _poly(x: ast.expr, x0: ast.expr, a0: ast.expr, *a: ast.expr) -> ast.expr:
     """Polynomial a0 + a1 (x - x0) + ... by Horner's scheme."""
-    value, *others = reversed(a)
+    value, *others = reversed((a0, *a))
     for coefficient in others:
         value = total([coefficient, product(difference(x, x0), value)])
     return value
 
 
-def _cheby(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
+def _cheby(x: ast.expr, x0: ast.expr, a0: ast.expr, *a: ast.expr) -> ast.expr:
     """Chebyshev series: the sum of a_k T_k(x - x0)."""
-    terms = [a[0]]
+    terms = [a0]
     before, now = [1], [0, 1]  # coefficients of T_0 and T_1, lowest first
-    for coefficient in a[1:]:
+    for coefficient in a:
         powers = [times(power(difference(x, x0), k), c) for k, c in enumerate(now) if c]
         terms.append(product(coefficient, total(powers)))
         doubled = [0, *(2 * c for c in now)]
@@ -38,10 +38,10 @@ def _cheby(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
 
 
 def _fourier(wave: str) -> Callable[..., ast.expr]:
-    def series(x: ast.expr, x0: ast.expr, w: ast.expr, *a: ast.expr) -> ast.expr:
+    def series(x: ast.expr, x0: ast.expr, w: ast.expr, a0: ast.expr, *a: ast.expr) -> ast.expr:
         """Fourier series: a0 + the sum of a_k wave(k w (x - x0))."""
         phase = product(w, difference(x, x0))
-        return total([a[0], *(product(c, call(wave, times(phase, k))) for k, c in enumerate(a[1:], start=1))])
+        return total([a0, *(product(c, call(wave, times(phase, k))) for k, c in enumerate(a, start=1))])
 
     return series
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ...elements.spatial.number_format import plain, vector
@@ -59,23 +58,31 @@ def _differential(one: Differential, translation: Translation) -> dict[str, obje
     }
 
 
-def depending_on_themselves(variables: Mapping[int, Variable]) -> frozenset[int]:
-    """Return the variables whose expressions depend on themselves, directly or through others."""
-    uses = {
-        ident: _variables_in(one.function) for ident, one in variables.items() if isinstance(one.function, Function)
-    }
-    reached = {ident: set(own) for ident, own in uses.items()}
+def depending_on_themselves(dataset: Dataset) -> frozenset[int]:
+    """Return the variables whose expressions depend on themselves, directly, through others, or through rates of DIFFs."""
+    variables, differentials = (
+        {key: _uses(one.function) for key, one in statements.items() if isinstance(one.function, Function)}
+        for statements in (dataset.variables, _explicit(dataset))
+    )
+    uses = {("VARVAL", ident): found for ident, found in variables.items()}
+    uses |= {("DIF1", ident): found for ident, found in differentials.items()}
+    reached = {key: set(own) for key, own in uses.items()}
     for _ in uses:
-        reached = {ident: own.union(*(uses.get(other, ()) for other in own)) for ident, own in reached.items()}
-    return frozenset(ident for ident, own in reached.items() if ident in own)
+        reached = {key: own.union(*(uses.get(other, ()) for other in own)) for key, own in reached.items()}
+    return frozenset(ident for ident in variables if ("VARVAL", ident) in reached["VARVAL", ident])
 
 
-def _variables_in(function: Function) -> set[int]:
+def _explicit(dataset: Dataset) -> dict[int, Differential]:
+    return {ident: one for ident, one in dataset.differentials.items() if not one.implicit}
+
+
+def _uses(function: Function) -> set[tuple[str, int]]:
+    """Return the variables and rates in an expression, each by the name of its function and its number."""
     calls = (node for node in ast.walk(function.tree) if isinstance(node, ast.Call) and node.args)
     return {
-        node.args[0].value
+        (node.func.id, node.args[0].value)
         for node in calls
-        if isinstance(node.func, ast.Name) and node.func.id == "VARVAL"
+        if isinstance(node.func, ast.Name) and node.func.id in ("VARVAL", "DIF1")
         and isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, int)
     }  # fmt: skip
 

@@ -15,6 +15,7 @@ from ...reading.files.quoted import quoted
 from ...reading.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
 from ..statements.declared import Numbered
+from ..statements.systems import Differential
 from .adams_functions import ADAMS_FUNCTIONS
 from .expression import IF, OMITTED, parse
 from .force_laws import LAWS, force_between, force_by_law
@@ -47,7 +48,7 @@ NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 class Translation:
     """Translator of the expressions of one dataset.
 
-    `substituted`: labels of the forces whose laws are being substituted.
+    `substituted`: labels of the forces whose laws, and of the DIFFs whose rates, are being substituted.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -58,7 +59,7 @@ class Translation:
     @cached_property
     def implicit_variables(self) -> frozenset[int]:
         """VARIABLEs that depend on themselves: algebraic states of the scene."""
-        return depending_on_themselves(self.mechanism.dataset.variables)
+        return depending_on_themselves(self.mechanism.dataset)
 
     def force_unit(self, component: str) -> float:
         """Return the unit of a component of a force, or of a torque ('T...'), N or N m."""
@@ -147,7 +148,7 @@ class Translation:
             return name_of(differential(self.mechanism.dataset, function.identifier(arguments, 0), function).name)
         if name == "DIF1":
             equation = differential(self.mechanism.dataset, function.identifier(arguments, 0), function)
-            return name_of(equation.rate) if equation.implicit else translate(equation.function.tree)
+            return name_of(equation.rate) if equation.implicit else self.rate(equation, function, translate)
         if name in ANGLES_OF_AXES:
             return self._angle(name, arguments, function)
         if name in (*REACTIONS, *LAWS):
@@ -163,6 +164,18 @@ class Translation:
             ends = [self.reference(function.identifier(arguments, k), function) for k in range(3)]
             return included_angle(*ends)
         raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected a supported function")
+
+    def rate(self, of: Differential, function: Function, translate: Callable[[ast.expr], ast.expr]) -> ast.expr:
+        """Return the expression of the rate of an explicit DIFF. Raises DatasetFault if it contains that rate."""
+        if of.label in self.substituted:
+            raise function.fault(
+                f"found DIF1({of.ident}) in the rate of {of.label}, expected IMPLICIT for an equation of its rate"
+            )
+        self.substituted.append(of.label)
+        try:
+            return translate(of.function.tree)
+        finally:
+            self.substituted.pop()
 
     def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Return a displacement, velocity or angle between markers.

@@ -69,6 +69,9 @@ class Request(Numbered):
         sort = found.one_of(*SORTS)
         if sort is None and not (found.idents("VARIABLES") or any(column in found for column in FUNCTIONS)):
             raise found.fault(f"found no quantity, expected one of {', '.join(SORTS)} or {COLUMNS[1]} = an expression")
+        others = [column for column in (*FUNCTIONS, "VARIABLES") if column in found]
+        if sort is not None and others:
+            raise found.fault(f"found {sort} and {others[0]}, expected one of them")
         if sort is not None and not found.reference("I"):
             raise found.fault(f"found no I, expected the marker whose {sort.lower()} is requested")
 
