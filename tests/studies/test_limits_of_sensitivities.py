@@ -299,11 +299,6 @@ def test_an_output_that_is_no_text_is_refused(of):
         sensitivities(scene, "bodies.a.mass", of)
 
 
-def test_the_field_formula_of_a_tyre_is_no_formula():
-    set_up = import_module("stiffmbs.studies.sensitivities.set_up")
-    assert not set_up._has_table((("formula", ("choice", "5.2")), ("LMUX", ("number",))))
-
-
 STRETCHED_PENDULUM = """
 gravity: [0, 0]
 parameters: {k: 88.7 N/m, l: 0.37}
