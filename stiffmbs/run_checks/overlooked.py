@@ -5,7 +5,8 @@ output times in one step, the mean of their accelerations times the interval is 
 the difference is small, and errors within the tolerance cause a limited number of tolerances. A force that acts within
 the step only, and at an output time, exceeds both. So does half a period of a vibration within one step of a high order:
 the interval is solved again from its first output time, and only if the velocities at its end differ, an event was missed.
-In strong damping, errors of velocities within a step explain large accelerations, which then show no event. Velocities that joints and drives prescribe follow no force, so that differences in them are left out.
+In strong damping, errors of velocities within a step explain large accelerations, which then show no event. Velocities
+that joints and drives prescribe follow no force, so that differences in them are left out.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ def random_numbers(state, rng, model):
         for e, (name, element) in enumerate(zip(group.names, group.elements, strict=True)):
             _, data = sorted_out(name, element, model)
             first, flat = int(group.index[e, 2 * group.kind.n_bodies]), data.flat()
-            for at, table in data.tables:
+            for at, _ in data.tables:
                 begin = first + int(flat[at])
                 change[first + at] = 0.0
                 change[begin : begin + 2] = 0.0
