@@ -37,13 +37,17 @@ SAMPLES = 2001
 """Times between which arguments that depend on time alone are taken as straight lines."""
 OF_FIELD = "the table "
 """Beginning of the text of an input that is the table of a field."""
-EXTENDED = NoteKind(
-    "table-extended",
+_DEPARTURE = (
     "the table '{label}' was left for {duration:.3g} s, first at t = {first:.6g} s: its argument reaches {reached:.6g}, "
-    "{beyond:.3g} beyond its {end}, and the slope there continues it to {continued:.6g} (its points have values from "
-    "{least:.6g} to {greatest:.6g})",
+    "{beyond:.3g} beyond its {end}, "
 )
-LEFT = NoteKind("table-left", EXTENDED.text, "state 'beyond': hold, extend, error or repeat, or give more points")
+_POINTS = "(its points have values from {least:.6g} to {greatest:.6g})"
+EXTENDED = NoteKind("table-extended", f"{_DEPARTURE}where it is extrapolated {_POINTS}")
+LEFT = NoteKind(
+    "table-left",
+    f"{_DEPARTURE}and the slope there continues it to {{continued:.6g}} {_POINTS}",
+    "state 'beyond': hold, extend, error or repeat, or give more points",
+)
 SMOOTH_CURVES = "use 'spline: true', or 'smoothing' with the accuracy of measured points"
 KINKED = NoteKind(
     "drive-by-lines",

@@ -160,9 +160,10 @@ def test_splines_are_tables_that_formulas_call():
     found = made(text, "MILLIMETER")
     points = [[0, 0], [1, 2], [2, 1], [3, 4], [5, 4]]
     assert found["tables"] == {
-        "AKISPL_3": {"table": points, "akima": True}, "CUBSPL_3": {"table": points, "ends": "not-a-knot"},
-        "LINE_3": {"table": points, "lines": True},
-    }  # fmt: skip
+        "AKISPL_3": {"table": points, "akima": True, "beyond": "extend"},
+        "CUBSPL_3": {"table": points, "ends": "not-a-knot", "beyond": "extend"},
+        "LINE_3": {"table": points, "lines": True, "beyond": "extend"},
+    }
     assert found["forces"]["SFORCE_1"]["force"].startswith(
         "10 * (AKISPL_3(dm(PART_2.MARKER_22, ground.MARKER_1) / 0.001) + "
     )

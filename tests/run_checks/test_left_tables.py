@@ -224,6 +224,14 @@ def test_a_table_that_a_request_leaves_is_noted(solver: str) -> None:
     assert not departures(run(read_scene(REQUEST.format(options=", beyond: hold"))))
 
 
+def test_a_stated_continuation_has_no_value_in_its_note() -> None:
+    """A formula may add to the table, as those of Adams' splines do: the table alone is another value."""
+    (note,) = departures(run(read_scene(REQUEST.format(options=", beyond: extend"))))
+    assert "8 beyond its last point at 2, where it is extrapolated (its points have values from 1 to 2)" in note
+    assert not note.remedy
+    assert note.kind == "table-extended"
+
+
 def test_a_run_stops_where_a_request_leaves_a_table_with_error() -> None:
     solution = run(read_scene(REQUEST.format(options=", beyond: error")), points=30)
     assert not solution.success

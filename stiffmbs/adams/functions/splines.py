@@ -52,7 +52,7 @@ def spline_value(
     for k, y in enumerate(spline.curves, start=1):
         table = f"{name}_{ident}" + (f"_{k}" if spline.z else "")
         points = [[plain(a), plain(b)] for a, b in zip(spline.x, y, strict=True)]
-        mechanism.tables[table] = {"table": points, **CURVES[name]}
+        mechanism.tables[table] = {"table": points, **CURVES[name], "beyond": "extend"}
         value = ast.Call(ast.Name(table), [argument], [])
         outside = (
             [] if is_clamped(argument, spline.x[0], spline.x[-1]) else _beyond(spline, y, table, argument, mechanism)
@@ -70,7 +70,7 @@ def _weight(spline: Spline, k: int, mechanism: Mechanism) -> str:
     """Add the table of a curve's weight in a family, which is linear in z, and return its name."""
     name = f"{spline.name}_weight_{k + 1}"
     points = [[plain(z), int(k == m)] for m, z in enumerate(spline.z)]
-    mechanism.tables[name] = {"table": points, "lines": True}
+    mechanism.tables[name] = {"table": points, "lines": True, "beyond": "extend"}
     return name
 
 
@@ -98,7 +98,7 @@ def _beyond(spline: Spline, y: tuple[float, ...], table: str, x: ast.expr, mecha
     """Yield what Adams' extrapolation of a spline adds to that of a table, which continues with the slope of its end.
 
     Adams follows the parabola through the three points at the end, with LINEAR_EXTRAPOLATE the line through two.  MSC
-    Adams/Solver, SPLINE.
+    Adams/Solver, SPLINE.  Notes on the table do not state values there, as these are of the sum.
     """
     points = np.array([spline.x, y])
     low, high = end_slopes(Table(**mechanism.tables[table]))
