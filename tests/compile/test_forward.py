@@ -138,6 +138,14 @@ add_products(1, 1, shifted(to, 4), 0, x, 1, shifted(x, 4), 4, 2)
     check(body, np.linspace(0.3, 1.9, 12), 12)
 
 
+def test_a_power_of_zero_has_a_derivative_by_its_exponent():
+    """The limit of x^y log x; a constant exponent that is a number of an element has a derivative of zero."""
+    _, directed = functions("to[0] = x[0]**x[1]")
+    x, x_d, to, to_d = np.array([0.0, 1.5]), np.array([2.0, 0.0]), np.zeros(1), np.full(1, np.nan)
+    directed.call(x.ctypes.data, x_d.ctypes.data, to.ctypes.data, to_d.ctypes.data)
+    assert to_d[0] == 0.0
+
+
 def test_every_function_of_the_library_has_partial_derivatives():
     assert {*(f"llvm.{name}.f64" for name in INTRINSICS), *OF_THE_LIBRARY} <= PARTIAL_DERIVATIVES.keys()
 

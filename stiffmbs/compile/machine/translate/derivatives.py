@@ -78,7 +78,7 @@ def _of_pow_by_base(x: float, y: float) -> float:
 
 
 def _of_pow_by_exponent(x: float, y: float) -> float:
-    return x**y * log(x)
+    return x**y * log(x) if x != 0.0 else 0.0
 
 
 def _of_copysign(x: float, y: float) -> float:
