@@ -251,6 +251,8 @@ def test_a_surface_in_a_mirrored_part(tmp_path):
     ({}, {}, "forces.top: found neither pressure nor traction"),
     ({"pressure": 1, "body": "baz"}, {}, r"forces.top.body: found the unknown flexible body 'baz' \(did you mean 'bar'"),
     ({"pressure": 1, "surface": "tip"}, {}, r"forces.top.surface: found the unknown surface 'tip'.*left, right, front"),
+    ({"pressure": True}, {}, "forces.top.pressure: found True"),
+    ({"traction": [0, True, 0]}, {}, "forces.top.traction.1: found True"),
     ({"pressure": "1 N"}, {}, "found N and N/m\\^2"),
     ({"pressure": 1}, {"surfaces": {"top": {"nodes": [0, 1]}}}, r"bodies.bar: surfaces.top: found no face of an element"),
     ({"pressure": 1}, {"surfaces": {"top": {"group": "skin"}}}, r"surfaces.top: .*found no group 'skin'"),
@@ -283,6 +285,7 @@ def test_a_load_in_a_model_built_in_python(tmp_path, monkeypatch):
         (lambda: model.remove("bar.top.torque"), "found a part of 'top', which can only be changed as a whole"),
         (lambda: model.add("top", load), "top: found a name that is taken"),
         (lambda: model.add("side", spatial.SurfaceLoad(body="bar", surface="none", pressure=1)), "side.surface: found the unknown surface 'none'"),
+        (lambda: model.add("tip", load), "tip.body: found 'bar', which has a part 'tip' too"),
         (lambda: model.add("push", spatial.AppliedForce(i={"body": "bar.frame"}, force=(1, 0, 0))), "would not deform"),
     ]:  # fmt: skip
         with pytest.raises(InputError, match=words):
