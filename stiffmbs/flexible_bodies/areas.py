@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
@@ -41,16 +42,17 @@ def unit_loads(model: FiniteElements, nodes: np.ndarray, outside: np.ndarray | N
 
     They are those of a pressure of 1 Pa, against the outer normals, and of tractions of 1 Pa along x, y and z. `outside`: direction of
     the outer normals of shells; by default they follow from the order of the nodes in the file. `hand`: -1 if the model is
-    the mirror image of its file. Raises InputError if there are no faces, or the normals of neighbouring shells are opposite.
+    the mirror image of its file. Raises InputError if there are no faces, or the outer normals of neighbouring shells
+    are opposite.
     """
     found = np.zeros((len(model.nodes), model.components, UNIT_LOADS))
     faces = list(_faces(model, nodes))
     if not faces:
         raise InputError("found no face of an element between its nodes, expected a surface of a mesh")
     if model.shell is not None:
-        if outside is None:
-            _check_normals(faces)
-        faces = [face._replace(normals=face.normals * _outward(face, outside, hand)) for face in faces]
+        signs = [_outward(face, outside, hand) for face in faces]
+        _check_normals(faces, signs, outside is not None)
+        faces = [face._replace(normals=face.normals * sign) for face, sign in zip(faces, signs, strict=True)]
     for face in faces:
         sizes = np.linalg.norm(face.normals, axis=1)
         loads = np.concatenate([-face.normals[:, :, None], sizes[:, None, None] * np.eye(3)], axis=2)
@@ -68,17 +70,24 @@ def _outward(face: Face, outside: np.ndarray | None, hand: float) -> float:
     return float(np.sign(along))
 
 
-def _check_normals(faces: list[Face]) -> None:
-    """Refuse shells whose neighbours have opposite normals: each common edge has opposite directions in both."""
-    seen: set[tuple[int, int]] = set()
-    for face in faces:
-        own = face.nodes.tolist()
-        for edge in zip(own, [*own[1:], own[0]], strict=True):
-            if edge in seen:
-                raise InputError(
-                    "found neighbouring shells with opposite normals, expected one outer side: state 'outside', a direction to it"
-                )
-            seen.add(edge)
+def _check_normals(faces: list[Face], signs: list[float], stated: bool) -> None:
+    """Refuse shells whose neighbours have opposite outer normals: each common edge has opposite directions in both.
+
+    `signs`: those of the outer normals by the order of the nodes. With a stated direction, edges of three and more
+    shells may have any.
+    """
+    loops = [face.nodes.tolist()[:: int(sign)] for face, sign in zip(faces, signs, strict=True)]
+    edges = Counter(edge for own in loops for edge in zip(own, [*own[1:], own[0]], strict=True))
+    for (start, end), count in edges.items():
+        if count > 1 and not stated:
+            raise InputError(
+                "found neighbouring shells with opposite normals, expected one outer side: state 'outside', a direction to it"
+            )
+        if count == 2 and not edges[end, start]:
+            raise InputError(
+                "found neighbouring shells with opposite sides in the direction 'outside', expected another direction, or one "
+                "surface for each of them"
+            )
 
 
 def _faces(model: FiniteElements, nodes: np.ndarray) -> Iterator[Face]:

@@ -25,7 +25,7 @@ from ..reading.files.yaml_text import Content, read_yaml
 from ..reading.names import beginnings
 from ..reading.units.units import Quantity
 from .beams.division import beams_read
-from .beams.entries import with_beams
+from .beams.entries import names_in_formulas, with_beams
 from .files import expand
 from .files.effective import chosen_options, keep_one_grid
 from .files.stages import with_held, written_stages
@@ -227,7 +227,7 @@ def _validated(
         }
         for section in REPEATED:
             later.set(section, raw.get(section))
-        raw = with_beams(raw, parameters)
+        raw = with_beams(raw, parameters, names_in_formulas(raw))
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, object] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
         context["roads"] = read_roads(raw.get("roads"), context)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -19,7 +19,8 @@ from ..reading.files.yaml_text import Content
 from ..reading.handle import Handles
 from .flexible import BY_BODY, FRAME, MODES, described_bodies
 
-Load = float | str
+Load = Annotated[float, Field(strict=True, allow_inf_nan=False)] | str
+"""Number or formula; neither true nor false."""
 
 
 class SurfaceLoad(LineBody):
@@ -57,13 +58,18 @@ class SurfaceLoad(LineBody):
     def forces(self, name: str, bodies: Mapping[str, Any]) -> dict[str, dict[str, object]]:
         """Return the forces of the load by their names, as entries of a scene.
 
-        `name`: that of the load. `bodies`: those of the scene or model. Raises InputError if there is no such body or surface.
+        `name`: that of the load. `bodies`: those of the scene or model. Raises InputError if there is no such body or surface,
+        or a part of the body has the name.
         """
         flexible = described_bodies(bodies)
         if self.body not in flexible:
             near = did_you_mean(self.body, flexible)
             listed = ", ".join(flexible) or "one of type flexible"
             raise InputError(f"body: found the unknown flexible body '{quoted(self.body)}'{near}, expected {listed}")
+        if f"{self.body}.{name}" in bodies:
+            raise InputError(
+                f"body: found '{self.body}', which has a part '{name}' too, expected another name of the load"
+            )
         surfaces = list(flexible[self.body].surfaces)
         if self.surface not in surfaces:
             near = did_you_mean(self.surface, surfaces)

@@ -78,6 +78,42 @@ def test_a_load_on_a_part_has_its_resultant_and_moment(interpolation, seed):
         assert found["bar.end.y"] == pytest.approx(expected, rel=error)
 
 
+@pytest.mark.parametrize("interpolation", ["pairs", "spectral"])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_load_that_varies_on_a_part_has_its_resultant_and_moment(interpolation, seed):
+    """Wherever the part ends within elements, and with a formula that has no value outside of it."""
+    first, last = np.sort(np.random.default_rng(seed).uniform(0.1, LENGTH, 2)).tolist()
+    part = f", first: {first!r} m, last: {last!r} m"
+    for formula, load, error in (
+        ("q0*x^2/L^2", lambda x: LOAD * x**2 / LENGTH**2, 1e-5),
+        (f"q0*sqrt((x - {first!r} m)/L)", lambda x: LOAD * np.sqrt((x - first) / LENGTH), 0.02),
+    ):  # fmt: skip
+        expected, force, moment = deflection(load, first, last)
+        found = at_rest(f'"{formula}"', 12, part, "", interpolation)
+        assert found["foot.fy"] == pytest.approx(-force, rel=error)
+        assert found["foot.torque"] == pytest.approx(-moment, rel=error)
+        assert found["bar.end.y"] == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    "section",
+    ["parameters: {x: 7 m}", "variables: {x: 7 m}", "inputs: {x: 7 m}", "states: {x: {rate: -x/1 s, start: 7 m}}"],
+)
+@pytest.mark.parametrize("in_part", [False, True])
+def test_another_meaning_of_the_place_is_refused(section, in_part):
+    """The load took the place for the name without a message."""
+    text = """
+bodies: {bar: {type: beam, start: [0, 0], end: [2, 0], elements: 2, stiffness: [1e7, 1e9, 1e5], mass_per_length: 3, inertia_per_length: 0.01}}
+forces: {lift: {type: distributed_load, beam: bar, force: [0, 1 N/m^2*x]}}
+"""
+    if in_part:
+        text = f"parts:\n  wing:{text.replace(chr(10), chr(10) + '    ')}\nuse: {{left: {{part: wing}}}}\n"
+    with pytest.raises(
+        InputError, match="found a name 'x' of the scene, which is the distance from the start of the beam here"
+    ):
+        stiffmbs.read_scene(text + section)
+
+
 def test_the_parts_of_a_load_are_the_whole_load():
     whole, first, last = (
         stiffmbs.read_scene(scene("2 N/m", 5, more, "a: 0.7 m")) for more in ("", ", last: 0.7 m", ", first: 0.7 m")
@@ -140,7 +176,9 @@ use: {left: {part: wing}, right: {part: wing, mirror: y}}
     ({"more": ", first: 1 m, last: 3 m"}, "forces.wind: found a load from 1 to 3 m, expected a part of the beam, 0 to 2 m"),
     ({"more": ", first: 1 m, last: 1 m"}, "found a load from 1 to 1 m"),
     ({"force": '"q0*x"'}, "found N and N/m"),
-    ({"parameters": ", x: 2", "force": '"q0*x/L"'}, "forces.wind.force: found a parameter 'x' of the scene"),
+    ({"parameters": ", x: 2", "force": '"q0*x/L"'}, "forces.wind.force: found a name 'x' of the scene"),
+    ({"force": "true"}, "forces.wind.force.1: found True"),
+    ({"force": ".nan"}, "forces.wind.force.1: found "),
     ({"more": ", last: 2 kg"}, "forces.wind.last: found '2 kg'"),
 ])  # fmt: skip
 def test_wrong_loads_are_refused(fields, reason):

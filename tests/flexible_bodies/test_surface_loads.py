@@ -219,6 +219,24 @@ def test_the_outer_side_of_shells(tmp_path, outside):
         assert found["bar.air.frame.fz"][0] == pytest.approx(-5 * sign)
 
 
+@pytest.mark.parametrize(("outside", "refused"), [(None, False), ([0.1, 1, 0], False), ([1, 0.01, 0], True)])
+def test_a_direction_that_changes_the_side_of_a_curved_shell_is_refused(tmp_path, outside, refused):
+    """Half a tube: the direction x is outside at one end and inside at the other, where the pressure had the other sign."""
+    nodes, cells, _ = surface(9, 2, lambda a, b: (np.cos(np.pi * (0.1 + 0.8 * a)), np.sin(np.pi * (0.1 + 0.8 * a)), b))
+    meshio.Mesh(nodes, list(cells.items())).write(tmp_path / "plate.vtu")
+    skin = {"nodes": list(range(len(nodes)))} | ({"outside": outside} if outside else {})
+    body = {"units": {"length": 1}, "thickness": 0.01, "surfaces": {"skin": skin}, "stiffening": False}
+    load = {"forces": {"air": {"type": "surface_load", "body": "bar", "surface": "skin", "pressure": 5}}}
+    if refused:
+        with pytest.raises(InputError, match=r"surfaces\.skin: found neighbouring shells with opposite sides"):
+            scene(tmp_path, "plate.vtu", {}, {"root": {"nodes": [0, 1, 2]}}, {}, load, **body)
+        return
+    found = stiffmbs.run(
+        scene(tmp_path, "plate.vtu", {}, {"root": {"nodes": [0, 1, 2]}}, {}, load, **body), duration=1e-5, points=2
+    )
+    assert abs(found["bar.air.frame.fy"][0]) == pytest.approx(5 * 2 * np.cos(0.1 * np.pi))
+
+
 def test_a_surface_in_a_mirrored_part(tmp_path):
     """The scene loads it by the name of the body there; pressure acts against the outer normal of the mirrored body."""
     mesh_of_bar("hexahedron20", 3, 1).write(tmp_path / "bar.vtu")
@@ -251,6 +269,8 @@ def test_a_surface_in_a_mirrored_part(tmp_path):
     ({}, {}, "forces.top: found neither pressure nor traction"),
     ({"pressure": 1, "body": "baz"}, {}, r"forces.top.body: found the unknown flexible body 'baz' \(did you mean 'bar'"),
     ({"pressure": 1, "surface": "tip"}, {}, r"forces.top.surface: found the unknown surface 'tip'.*left, right, front"),
+    ({"pressure": True}, {}, "forces.top.pressure: found True"),
+    ({"traction": [0, True, 0]}, {}, "forces.top.traction.1: found True"),
     ({"pressure": "1 N"}, {}, "found N and N/m\\^2"),
     ({"pressure": 1}, {"surfaces": {"top": {"nodes": [0, 1]}}}, r"bodies.bar: surfaces.top: found no face of an element"),
     ({"pressure": 1}, {"surfaces": {"top": {"group": "skin"}}}, r"surfaces.top: .*found no group 'skin'"),
@@ -283,6 +303,7 @@ def test_a_load_in_a_model_built_in_python(tmp_path, monkeypatch):
         (lambda: model.remove("bar.top.torque"), "found a part of 'top', which can only be changed as a whole"),
         (lambda: model.add("top", load), "top: found a name that is taken"),
         (lambda: model.add("side", spatial.SurfaceLoad(body="bar", surface="none", pressure=1)), "side.surface: found the unknown surface 'none'"),
+        (lambda: model.add("tip", load), "tip.body: found 'bar', which has a part 'tip' too"),
         (lambda: model.add("push", spatial.AppliedForce(i={"body": "bar.frame"}, force=(1, 0, 0))), "would not deform"),
     ]:  # fmt: skip
         with pytest.raises(InputError, match=words):

@@ -80,12 +80,16 @@ class Span:
     first: int  # number of its first node
     group: Group
 
-    def shares(self, first: float, last: float) -> np.ndarray:
-        """Return the lengths at its nodes of the part between two places, m along the axis."""
+    def shares(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return places in the part between two places, m along the axis, and the length of each for each of its nodes.
+
+        The places are the nodes if the part is the whole span, and Gauss points within the part otherwise.
+        """
         length, lower, upper = self.end - self.start, max(self.start, first), min(self.end, last)
         if upper - lower >= length * (1 - SAME):
-            return length * self.group.weights
-        return length * self.group.integrals((lower - self.start) / length, (upper - self.start) / length)
+            return self.start + length * self.group.nodes, length * np.diag(self.group.weights)
+        places, weights = self.group.quadrature((lower - self.start) / length, (upper - self.start) / length)
+        return self.start + length * places, length * weights
 
 
 @dataclass(frozen=True)
@@ -97,12 +101,16 @@ class Line:
     divided: Divided
     spans: list[Span]
 
-    def shares(self, first: float, last: float) -> np.ndarray:
-        """Return the length at each node of the part between two places, m along the axis."""
-        found = np.zeros(len(self.nodes))
+    def shares(self, first: float, last: float) -> list[dict[float, float]]:
+        """Return the lengths at each node, by the places of their loads, of the part between two places, m along the axis."""
+        found: list[dict[float, float]] = [{} for _ in self.nodes]
         for span in self.spans:
             if span.start < last and first < span.end:
-                found[span.first : span.first + len(span.group.nodes)] += span.shares(first, last)
+                places, lengths = span.shares(first, last)
+                for own, of_node in zip(found[span.first :], lengths.T.tolist(), strict=False):
+                    for place, length in zip(places.tolist(), of_node, strict=True):
+                        if length:
+                            own[place] = own.get(place, 0.0) + length
         return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from ...elements.body import FLEXIBLE, check_names
 from ...errors import InputError, prefixed
@@ -24,12 +24,18 @@ BEAM = "beam"
 
 
 def expand_beams(
-    bodies: Content, forces: object, parameters: Mapping[str, object], dimensions: object, where: str, instance: str
+    bodies: Content,
+    forces: object,
+    parameters: Mapping[str, object],
+    names: Collection[str],
+    dimensions: object,
+    where: str,
+    instance: str,
 ) -> tuple[Content, object]:
     """Return the bodies and forces of a scene or part with beams replaced by their nodes and elements.
 
     The entries are as written, with repeated ones expanded. `where` is the path of the bodies for messages, `instance`
-    the name of the part followed by a dot, for the record of all beams. InputError if a beam cannot be read, or one of
+    the name of the part followed by a dot, for the record of all beams. `names`: further names in formulas. InputError if a beam cannot be read, or one of
     its names is taken.
     """
     found: Content = {}
@@ -56,7 +62,9 @@ def expand_beams(
     for name, entry in (forces or {}).items():
         if name in added:
             raise InputError(f"forces.{name}: found a name that a beam makes too, expected another")
-        loads = _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}", dimensions, parameters)
+        loads = _loads(
+            name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}", dimensions, parameters, names
+        )
         of_beams |= loads.keys() - {name}
         added |= loads
     divided = {f"{instance}{name}": line.divided for name, line in lines.items()}
@@ -78,6 +86,7 @@ def _loads(
     where: str,
     dimensions: object,
     parameters: Mapping[str, object],
+    names: Collection[str],
 ) -> dict[str, object]:
     """Return the forces of a distributed load or a contact of a beam; other forces as they are."""
     if not isinstance(entry, dict):
@@ -89,7 +98,7 @@ def _loads(
         return {name: entry}
     with located(where):
         load = DistributedLoad.model_validate(entry, context={"parameters": parameters})
-    return node_forces(name, load, lines, where, parameters)
+    return node_forces(name, load, lines, where, {*parameters, *names})
 
 
 def read_beam(entry: Mapping[str, object], parameters: Mapping[str, object], dimensions: object, where: str) -> Beam:

@@ -51,20 +51,23 @@ class Group:
             return cast(np.ndarray, found)
         return np.array([at((1 + x) / 2) for x in places])
 
-    def integrals(self, lower: float, upper: float) -> np.ndarray:
-        """Return the integrals of the nodes' shapes between two fractions of the length, shape (p + 1,).
+    def quadrature(self, lower: float, upper: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return Gauss points between two fractions of the length, and the weight of each for each node.
 
-        The shapes are the polynomials of a spectral group, and linear between the nodes of others.
+        The weights, shape (points, p + 1), are times the nodes' shapes: the polynomials of a spectral group, and linear
+        between the nodes of others.
         """
         if self.sections:
             return _of_polynomials(self.nodes, lower, upper)
-        found = np.zeros(len(self.nodes))
+        places, weights = [], []
         for k in range(len(self.nodes) - 1):
             ends = self.nodes[k : k + 2]
             inside = np.clip((lower, upper), *ends)
             if inside[0] < inside[1]:
-                found[k : k + 2] += _of_polynomials(ends, *inside)
-        return found
+                at, own = _of_polynomials(ends, *inside)
+                places.append(at)
+                weights.append(np.pad(own, ((0, 0), (k, len(self.nodes) - k - 2))))
+        return np.concatenate(places), np.concatenate(weights)
 
     @property
     def reference(self) -> int:
@@ -91,12 +94,12 @@ class Group:
         return cls(np.linspace(0, 1, count + 1), node_weights(count) / count, ())
 
 
-def _of_polynomials(nodes: np.ndarray, lower: float, upper: float) -> np.ndarray:
-    """Return the integrals of the polynomials through nodes, each 1 at one of them, between two places."""
+def _of_polynomials(nodes: np.ndarray, lower: float, upper: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points between two places, and their weights times the polynomials that are 1 at one of the nodes."""
     points, weights = legendre.leggauss(len(nodes))
     places = lower + (upper - lower) * (1 + points) / 2
     values = np.vander(places, len(nodes)) @ np.linalg.inv(np.vander(nodes, len(nodes)))
-    return cast(np.ndarray, (upper - lower) / 2 * weights @ values)
+    return places, (upper - lower) / 2 * weights[:, None] * values
 
 
 def group_sizes(start: float, end: float, count: int, turn: float) -> Iterator[tuple[float, float, int]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator
 
@@ -28,7 +28,7 @@ class DistributedLoad(Described):
 
     type: Literal["distributed_load"] = "distributed_load"
     beam: str = Field(description="name of the beam")
-    force: tuple[float | str, ...] = Field(
+    force: tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)] | str, ...] = Field(
         description="components per length, N/m: numbers or formulas of time, of measured quantities and of x, the distance from the start along the axis, m"
     )
     first: si.Length | None = Field(None, description="x at the start of the load, m; the start of the beam by default")
@@ -47,19 +47,19 @@ class DistributedLoad(Described):
 
 
 def node_forces(
-    name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str, parameters: Collection[str]
+    name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str, names: Collection[str]
 ) -> dict[str, object]:
     """Return the nodal forces of a distributed load, as entries of a scene.
 
-    Each has the load at the node times a length. The lengths of a whole interval are those that lump the mass; of a
-    part of it, they are the integrals of the shapes of the nodes. Raises InputError if the load names an unknown beam,
-    has a part beyond it, or a formula of x in a scene with a parameter of this name.
+    Each has the load at the node times a length that lumps the mass. In an interval that is loaded in part, it has the
+    integral of the load times the shape of the node. `names`: those of the parameters, variables, states and inputs of the
+    scene. Raises InputError if the load names an unknown beam, has a part beyond it, or a formula of x, which is one of the names.
     """
     line = _line(load.beam, lines, where)
-    if PLACE in parameters and any(isinstance(part, str) and _PLACE.search(part) for part in load.force):
+    if PLACE in names and any(isinstance(part, str) and _PLACE.search(part) for part in load.force):
         raise InputError(
-            f"{where}.force: found a parameter '{PLACE}' of the scene, which is the distance from the start of the beam here, "
-            "expected another name of the parameter"
+            f"{where}.force: found a name '{PLACE}' of the scene, which is the distance from the start of the beam here, "
+            "expected another name of the parameter, variable, state or input"
         )
     total = line.divided.length
     first, last = 0.0 if load.first is None else load.first, total if load.last is None else load.last
@@ -70,9 +70,9 @@ def node_forces(
     axes = {"axes": "body"} if load.axes == "section" else {}
     return {
         f"{name}.{node.name}": {
-            "type": "force", "i": f"{load.beam}.{node.name}", "force": [_times(part, share, node.s) for part in load.force], **axes
+            "type": "force", "i": f"{load.beam}.{node.name}", "force": [_times(part, lengths) for part in load.force], **axes
         }
-        for node, share in zip(line.nodes, line.shares(first, last).tolist(), strict=True) if share
+        for node, lengths in zip(line.nodes, line.shares(first, last), strict=True) if lengths
     }  # fmt: skip
 
 
@@ -114,8 +114,12 @@ def _product(stiffness: Any, length: float) -> Any:
     return stiffness * length if type(stiffness) in (int, float) else stiffness
 
 
-def _times(component: float | str, length: float, x: float) -> float | str:
-    """Return a force from a force per length at a place; a formula keeps its units, and a plain number is in N/m."""
+def _times(component: float | str, lengths: Mapping[float, float]) -> float | str:
+    """Return a force from a force per length and lengths by place; a formula keeps its units, and a plain number is in N/m."""
     if not isinstance(component, str):
-        return component * length
-    return f"({length!r} m)*(({_PLACE.sub(f'({x!r} m)', component)}) + 0 N/m)"
+        return component * sum(lengths.values())
+    if not _PLACE.search(component):
+        return f"({sum(lengths.values())!r} m)*(({component}) + 0 N/m)"
+    return " + ".join(
+        f"({length!r} m)*(({_PLACE.sub(f'({x!r} m)', component)}) + 0 N/m)" for x, length in lengths.items()
+    )

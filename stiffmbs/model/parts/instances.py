@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -76,6 +76,7 @@ class Instances:
     """Reader of the instances of a scene, in order from outer to inner.
 
     `context`: parameters, tables and folder of the scene. `later`: values set in instances from outside. `words`: choices of the scene. `dimensions`: 2 or 3.
+    `names`: those of variables, states and inputs of the scene.
     """
 
     context: Context
@@ -83,6 +84,7 @@ class Instances:
     later: Later
     words: Mapping[str, str]
     dimensions: int
+    names: Collection[str]
     values: int = 0
     found: list[Instance] = field(default_factory=list)
 
@@ -155,7 +157,7 @@ class Instances:
                     f"parts.{use.part}.forces.{each}: found a surface load in a part, expected it among the forces of the scene, "
                     f"with the name that the body has there: {name}.{quoted(str(entry.get('body')))}"
                 )
-        sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.", f"{name}.")
+        sections = with_beams(sections, own, self.names, self.dimensions, f"parts.{use.part}.", f"{name}.")
         try:
             sections, flexible, made = self._without_flexible(sections, f"parts.{use.part}.bodies", own)
         except InputError as error:

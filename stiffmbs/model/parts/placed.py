@@ -28,6 +28,7 @@ from ...reading.formula.variables import meant_within
 from ...reading.marker import MarkerReference
 from ...reading.names import GROUND, MOUNT, Names
 from ...reading.units.units import Quantity, in_text
+from ..beams.entries import names_in_formulas
 from .as_described import AsDescribed
 from .changes import Later
 from .definitions import Definitions, shipped_parts
@@ -59,6 +60,7 @@ def with_parts(
         later,
         context["words"],
         scene.model_fields["dimensions"].default,
+        names_in_formulas(raw),
     )
     if used is not None:
         instances.read(used, context["parameters"])
