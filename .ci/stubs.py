@@ -174,7 +174,7 @@ def _given(annotation: Any, metadata: Any = ()) -> str:
     if origin in (Union, types.UnionType):
         if {Formula, Table} <= set(parts):
             return "given.Curve" + (" | None" if type(None) in parts else "")
-        if {float, str} <= set(parts):
+        if {float, str} <= {get_args(part)[0] if get_origin(part) is Annotated else part for part in parts}:
             return "given.Law" + (" | None" if type(None) in parts else "")
         return " | ".join(dict.fromkeys(_given(part) for part in parts))
     if origin is tuple:
