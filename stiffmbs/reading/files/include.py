@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from os.path import relpath
 from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from .names_of_files import from_folder
+from .names_of_files import with_names_of_files
 from .quoted import quoted, written
 from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text
@@ -117,8 +118,22 @@ class _Including:
             raise InputError(
                 f"{file}: found {'nothing' if found is None else 'other content'}, expected a mapping of sections"
             )  # no quote
-        found = from_folder(found, name.parent)
+        if name.parent != Path():
+            found = with_names_of_files(found, lambda own: self._from_scene(own, name))
         return self.whole(found, str(file), name.parent, (*within, file.resolve()), path)
+
+    def _from_scene(self, name: str, within: Path) -> str:
+        """Return the name of a file in an included file, seen from the folder of the scene.
+
+        Raises InputError for one that starts from the folder of the scene, as in earlier versions.
+        """
+        own = within.parent / name
+        if not (self.folder / own).exists() and (self.folder / name).exists():
+            raise InputError(
+                f"{self.folder / within}: found the file '{quoted(name)}', expected '{quoted(relpath(name, within.parent))}': "
+                "names of files start from the folder of the file that has them"
+            )
+        return own.as_posix()
 
 
 def _check_file(file: Path, where: _Place) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -24,22 +23,17 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Paths of further sections, in the sections that have them."""
 
 
-def from_folder(found: Any, folder: Path) -> Any:
-    """Return the sections of a file with names of files that start from another folder, from which its own has this path.
+def with_names_of_files(found: Any, change: Callable[[str], str]) -> Any:
+    """Return the sections of a file with their names of files changed; Python objects and mappings stay as they are.
 
     The sections are not modified, because YAML aliases may share them.
     """
-    if folder == Path() or not isinstance(found, dict):
+    if not isinstance(found, dict):
         return found
-
-    def moved(name: object) -> object:
-        """Return the name of a file from the other folder; Python objects and mappings as they are."""
-        return (folder / name).as_posix() if isinstance(name, str) else name
-
     for path in PLACES:
-        found = _replaced(found, path, moved)
+        found = _replaced(found, path, lambda name: change(name) if isinstance(name, str) else name)
     for section, path in SECTIONS.items():
-        found = _replaced(found, (section, *path), lambda inner: from_folder(inner, folder))
+        found = _replaced(found, (section, *path), lambda inner: with_names_of_files(inner, change))
     return found
 
 

@@ -178,6 +178,15 @@ def test_names_of_files_in_options_and_stages_of_included_files(write, files):
     assert len(stiffmbs.load_scene(path).stage_scenes) == 2
 
 
+def test_a_name_from_the_folder_of_the_scene_as_before_is_refused_with_the_new_one(write, files):
+    text = WHEEL.replace("../tyres/car.tir", "tyres/car.tir")
+    path = write(main="dimensions: 3\ninclude: sub/wheel.yaml", sub__wheel=text)
+    with pytest.raises(
+        InputError, match=r"wheel.yaml: found the file 'tyres/car.tir', expected '../tyres/car.tir': names of"
+    ):
+        stiffmbs.load_scene(path)
+
+
 def test_absolute_names_stay_and_shared_entries_are_changed_once(write, files):
     tyre = "&t {type: magic_formula_tyre, i: a, properties: ../tyres/car.tir, road: {type: flat}}"
     path = write(
