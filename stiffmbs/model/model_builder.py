@@ -131,6 +131,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         before = [(section, [*section]) for section in self._sections()]
 
         def change() -> Any:
+            """Put the new part in place of the old one; return its handles."""
             self._take_out(name)
             handles = self._add_line(name, part)
             for section, keys in before:
