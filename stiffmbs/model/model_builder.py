@@ -174,6 +174,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         """
         name = str(name)
         if name in self._lines:
+            self._check_loads(name)
             self._changed(name, lambda: self._take_out(name))
             return
         section = self._found(name)

@@ -300,6 +300,7 @@ def test_a_load_in_a_model_built_in_python(tmp_path, monkeypatch):
     np.testing.assert_allclose(found["bar.tip.z"], expected["bar.tip.z"], rtol=1e-9)
     for change, words in [
         (lambda: model.replace("bar", spatial.FlexibleBody(**described)), "bar: found the load 'top' on it"),
+        (lambda: model.remove("bar"), "bar: found the load 'top' on it"),
         (lambda: model.remove("bar.top.torque"), "found a part of 'top', which can only be changed as a whole"),
         (lambda: model.add("top", load), "top: found a name that is taken"),
         (lambda: model.add("side", spatial.SurfaceLoad(body="bar", surface="none", pressure=1)), "side.surface: found the unknown surface 'none'"),
