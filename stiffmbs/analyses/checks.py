@@ -85,8 +85,7 @@ def _drives(job: Job) -> Iterator[Note]:
     from ..run_checks.tables import tabled_drive_notes
 
     system, grid = job.dynamics.system, job.grid
-    opposed = partial(opposed_notes, system, job.data, job.start.q, grid)
-    yield from job.dynamics.kept("opposed actuators", None, opposed)
+    yield from job.dynamics.once(lambda _: opposed_notes(system, job.data, job.start.q, grid), name="opposed actuators")
     yield from tabled_drive_notes(
         system, job.data.joints, job.dynamics.input_features(grid.start, grid.end).breakpoints
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, TypeVar, cast
+from typing import TYPE_CHECKING, Protocol, TypeVar, TypeVarTuple, cast
 
 import numpy as np
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .elimination.eliminated import Eliminated
 
 T = TypeVar("T")
+Settings = TypeVarTuple("Settings")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, TRAILING_RATES, FACTOR_AND_SOLVE, OUTPUT_POINTS = together(
     "stiffmbs.dynamics.native.dynamics",
     SHORT,
@@ -115,7 +116,7 @@ class Dynamics:
         self._positions, self._velocities, self._accelerations = saddle_points(
             self.state, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS
         )
-        self._kept: dict[str, tuple[object, object]] = {}
+        self._made: dict[object, tuple[object, object]] = {}
         counters, states = system.term("acceleration", "angle_rate"), system.term("acceleration", "rate")
         source, row = np.append(counters.source, states.source), np.append(counters.row, states.row)
         moving = ~np.isin(row, algebraic)
@@ -166,13 +167,16 @@ class Dynamics:
         """Return the last failure of output rows or of steps (`stiffmbs.compile.machine.native.statuses`)."""
         return int(self._cells["status"])
 
-    def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
-        """Return the object that a solver keeps under a name for these settings, or make it."""
-        key = (settings, self.coordinates)
-        if name not in self._kept or self._kept[name][0] != key:
-            self._kept[name] = (key, make())
+    def once(self, make: Callable[[Dynamics, *Settings], T], *settings: *Settings, name: str = "") -> T:
+        """Return ``make(self, *settings)``, made again only if the settings or the coordinates have changed.
+
+        `name`: distinguishes several objects made by one function, such as the engines of two solvers.
+        """
+        key, made_for = name or make, (settings, self.coordinates)
+        if key not in self._made or self._made[key][0] != made_for:
+            self._made[key] = (made_for, make(self, *settings))
             self.system.known_terms.clear()
-        return cast(T, self._kept[name][1])
+        return cast(T, self._made[key][1])
 
     def forget_pivots(self, within_run: bool = False) -> None:
         """Discard all pivot sequences, so that the rounding of a run does not depend on earlier runs.

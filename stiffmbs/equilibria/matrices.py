@@ -137,7 +137,7 @@ def solution(dynamics: Dynamics, matrix: Matrix, right: np.ndarray, n: int) -> n
         except RuntimeError:  # exactly singular
             return None
     system, size = dynamics.system, len(right)
-    order = dynamics.kept("order of balances", None, lambda: order_by_blocks(system))
+    order = dynamics.once(_order)
     at = np.empty(len(order.unknowns), dtype=np.int64)
     at[order.unknowns] = np.arange(len(at))
     multipliers = at[system.n_u + len(system.states) + np.flatnonzero(system.active)]
@@ -152,6 +152,10 @@ def solution(dynamics: Dynamics, matrix: Matrix, right: np.ndarray, n: int) -> n
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:
         return None
+
+
+def _order(dynamics: Dynamics) -> EliminationOrder:
+    return order_by_blocks(dynamics.system)
 
 
 def _solves(matrix: np.ndarray, right: np.ndarray, found: np.ndarray) -> bool:

@@ -25,7 +25,7 @@ from ..model.settings import RunSettings
 from ..tuning import tuned
 from .cost import COSTS, Counted, ImplicitCost, of_explicit_step, of_kernels
 from .engine import Reached
-from .error_control.tolerances import absolute_tolerances
+from .error_control.tolerances import tolerances_of
 from .events.restart import restarted
 from .explicit.adaptive import AdaptiveSteps
 from .explicit.dop853 import DOP853
@@ -161,16 +161,8 @@ class Implicit:
             self.change(self.name or "bdf")
 
     def _estimated(self, name: str, final: bool) -> tuple[ImplicitCost, float, float]:
-        """Return the costs of an integrator, which the dynamics keep: with its linear solver if it is final, or lower bounds."""
-
-        def estimated() -> tuple[ImplicitCost, float, float]:
-            """Estimate the costs, which takes some time."""
-            factors = 1e-3 * driven(self._dynamics, self._settings, **_driver(name)).cost if final else None
-            found = (radau.of_radau if name == "radau" else ImplicitCost.of)(self._dynamics, factors)
-            growth = -math.log10(self._settings.rtol) * found.start_steps * found.step
-            return found, growth, found.memory + growth
-
-        return self._dynamics.kept(f"costs of {name}, {final}", self._settings, estimated)
+        """Return the costs of an integrator, estimated once for a system."""
+        return self._dynamics.once(_costs, self._settings, name, final, name=f"costs of {name}, {final}")
 
     @cached_property
     def integrator(self) -> Integrator[NativeEngine]:
@@ -190,6 +182,18 @@ class Implicit:
         cost = self.cost.work(int(counted["residuals"]), int(counted["factorizations"]))
         long = self.engine.steps() if self.name == "radau" else 0
         return Counted(t, cost, restarts=int(counted["breakpoints"]) + int(counted["events"]), long=long)
+
+
+def _costs(dynamics: Dynamics, settings: RunSettings, name: str, final: bool) -> tuple[ImplicitCost, float, float]:
+    """Estimate the costs of an integrator, with its linear solver if it is final, or lower bounds."""
+    factors = 1e-3 * driven(dynamics, settings, **_driver(name)).cost if final else None
+    found = (radau.of_radau if name == "radau" else ImplicitCost.of)(dynamics, factors)
+    growth = -math.log10(settings.rtol) * found.start_steps * found.step
+    return found, growth, found.memory + growth
+
+
+def _with_dop853(dynamics: Dynamics, settings: RunSettings) -> RunSettings:
+    return settings.model_copy(update={"scheme": "dop853", "projection": True})
 
 
 def _driver(name: str) -> dict[str, Any]:
@@ -269,13 +273,10 @@ class _AutoRun:
 
     def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
         self._dynamics, self._grid, self._watch = dynamics, grid, watch
-        changes = {"scheme": "dop853", "projection": True}
-        self._settings = dynamics.kept("settings of auto", settings, lambda: settings.model_copy(update=changes))
+        self._settings = dynamics.once(_with_dop853, settings)
         self.implicit = Implicit(dynamics, self._settings)
         self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
-        self.explicit_step, self._evaluation = dynamics.kept(
-            "costs of explicit steps", settings, lambda: (of_explicit_step(dynamics), of_kernels(dynamics))
-        )
+        self.explicit_step, self._evaluation = dynamics.once(of_explicit_step), dynamics.once(of_kernels)
         self._explicit_rate = np.inf  # cost per second of the motion
         self._implicit_rate = np.inf  # the same of implicit steps, before they were left
         self._return_ratio, self._penalty = 1.0, 0.0
@@ -442,8 +443,8 @@ class _AutoRun:
         if not rates.fastest:
             return np.inf
         system, settings = self._dynamics.system, self._settings
-        tolerances = self._dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
-        excitation = float((rates.velocity / (tolerances[system.n_q :] + settings.rtol * np.abs(u))).max(initial=0.0))
+        absolute = self._dynamics.once(tolerances_of, settings)
+        excitation = float((rates.velocity / (absolute[system.n_q :] + settings.rtol * np.abs(u))).max(initial=0.0))
         return steps_of_decay(excitation, rates.decay_ratio, rates.excited * self.remaining(t))
 
     def _breakpoints_after(self, t: float) -> int:

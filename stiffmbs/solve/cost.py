@@ -135,15 +135,10 @@ def least_solver(dynamics: Dynamics) -> float:
 
 def unknowns(dynamics: Dynamics) -> int:
     """Return the number of unknowns of BDF: coordinates, velocities, and two multipliers per constraint."""
-
-    def counted() -> int:
-        """Count them once for each dynamics."""
-        coordinates = dynamics.coordinates
-        solved_for = dynamics.system.active & ~coordinates.satisfied
-        free = coordinates.independent.sum() + coordinates.independent_u.sum()
-        return int(free) + 2 * int(solved_for.sum())
-
-    return dynamics.kept("unknowns", None, counted)
+    coordinates = dynamics.coordinates
+    solved_for = dynamics.system.active & ~coordinates.satisfied
+    free = coordinates.independent.sum() + coordinates.independent_u.sum()
+    return int(free) + 2 * int(solved_for.sum())
 
 
 class Counted(NamedTuple):

@@ -57,7 +57,7 @@ def projected(dynamics: Dynamics, t: float, states: States, step: float) -> Stat
 
 def _projection(dynamics: Dynamics) -> StiffProjection:
     """Return the projection that a system keeps, without pivots of earlier states."""
-    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
+    projection = dynamics.once(StiffProjection)
     projection.forget_pivots()
     return projection
 

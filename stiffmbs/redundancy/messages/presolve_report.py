@@ -110,7 +110,7 @@ class StructureNotes(NamedTuple):
 
 def structure_notes(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:
     """Return the messages on the structure of an examined and presolved system, cached for all its runs."""
-    return dynamics.kept("structure notes", None, lambda: _found(redundancy, subsystems, dynamics))
+    return dynamics.once(lambda dynamics: _found(redundancy, subsystems, dynamics), name="structure notes")
 
 
 def _found(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compile.system import System, Term
+from ...compile.system import Term
 from ...dynamics.dynamics import Dynamics
 
 
@@ -32,10 +32,11 @@ def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
 
 def row_sums_of(dynamics: Dynamics) -> tuple[RowSums, RowSums]:
     """Return the row sums of the derivatives of accelerations with respect to positions and velocities."""
-    return dynamics.kept("row sums", None, lambda: _row_sums(dynamics.system))
+    return dynamics.once(_row_sums)
 
 
-def _row_sums(system: System) -> tuple[RowSums, RowSums]:
+def _row_sums(dynamics: Dynamics) -> tuple[RowSums, RowSums]:
+    system = dynamics.system
     f_q, f_u = system.term("tangent", "f_q"), system.term("tangent", "f_u")
     return row_sums(f_q, system.mass, system.mass_by_coordinate), row_sums(f_u, system.mass, system.mass)
 

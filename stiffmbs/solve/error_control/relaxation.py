@@ -81,19 +81,19 @@ def drift_of_velocities(settings: RunSettings, system: System) -> float:
 
 def inverse_mass(dynamics: Dynamics) -> np.ndarray:
     """Return the inverse masses and moments of inertia that relaxations use, shape (n_u,)."""
-    return dynamics.kept("relaxation", None, lambda: 1 / _heaviest(dynamics.system))
+    return dynamics.once(_inverse_mass)
 
 
 def _factor(settings: RunSettings) -> float:
     return min(max(settings.rtol / 1e-8, 1 / RELAXATION.largest_factor), RELAXATION.largest_factor)
 
 
-def _heaviest(system: System) -> np.ndarray:
-    """Return the largest mass, or largest moment of inertia about a point across the mechanism, for each velocity."""
-    of_body = system.of_body
+def _inverse_mass(dynamics: Dynamics) -> np.ndarray:
+    """Return 1 over the largest mass, or largest moment of inertia about a point across the mechanism, for each velocity."""
+    system, of_body = dynamics.system, dynamics.system.of_body
     largest = system.mass.reshape(-1, of_body.n_u).max(axis=0)
     mass, inertia = largest[0], largest[of_body.linear :].max()
-    return system.per_velocity(mass, inertia + mass * system.size**2)
+    return 1 / system.per_velocity(mass, inertia + mass * system.size**2)
 
 
 def drifts(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, limit: float) -> bool:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.system import System
+from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 
 WHICH_TURN = 1e-3
@@ -26,6 +27,11 @@ def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
     tolerances[system.n_pose : system.first_state] = WHICH_TURN
     tolerances[system.first_state : system.n_q] *= system.state_scales
     return tolerances
+
+
+def tolerances_of(dynamics: Dynamics, settings: RunSettings) -> np.ndarray:
+    """Return the absolute tolerances of a system (`absolute_tolerances`)."""
+    return absolute_tolerances(dynamics.system, settings)
 
 
 def independent_tolerances(equations: Equations, settings: RunSettings) -> np.ndarray:

@@ -240,13 +240,12 @@ def _rates_differ(moves: Sequence[tuple[_Side, _Side]], event_function: int) -> 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
     """Return a direction of moves from a state that changes every coordinate and velocity."""
-    system = dynamics.system
-    return dynamics.kept("direction beside a state", None, lambda: _direction(system.n_q, system.n_u))
+    return dynamics.once(_direction)
 
 
-def _direction(n_q: int, n_u: int) -> tuple[np.ndarray, np.ndarray]:
-    rng = np.random.default_rng(1)
-    first, second = (rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) for n in (n_q, n_u))
+def _direction(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
+    rng, sizes = np.random.default_rng(1), (dynamics.system.n_q, dynamics.system.n_u)
+    first, second = (rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) for n in sizes)
     return first, second
 
 
@@ -259,6 +258,13 @@ class VelocityJumpParameters:
 
 
 VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
+
+
+def _scale_and_least(dynamics: Dynamics, settings: RunSettings) -> tuple[np.ndarray, float]:
+    system = dynamics.system
+    scale = np.ascontiguousarray(system.per_velocity(1.0, system.size))
+    tolerances = absolute_tolerances(system, settings)[system.n_q :]
+    return scale, float(np.min(scale * tolerances, initial=np.inf))
 
 
 class Jumps:
@@ -274,13 +280,7 @@ class Jumps:
 
         A change up to it, m/s or m, is no jump at any velocities.
         """
-        return self._dynamics.kept("velocity jumps", self._settings, self._scale_and_least)
-
-    def _scale_and_least(self) -> tuple[np.ndarray, float]:
-        system = self._dynamics.system
-        scale = np.ascontiguousarray(system.per_velocity(1.0, system.size))
-        tolerances = absolute_tolerances(system, self._settings)[system.n_q :]
-        return scale, float(np.min(scale * tolerances, initial=np.inf))
+        return self._dynamics.once(_scale_and_least, self._settings)
 
     def is_jump(self, change: np.ndarray) -> bool:
         """Return True if a change of velocities to those of the current state is a jump."""

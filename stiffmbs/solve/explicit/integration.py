@@ -15,7 +15,7 @@ from ...dynamics.initial import InitialValues
 from ...dynamics.native.parameters import CONSISTENCY
 from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
-from ..error_control.tolerances import absolute_tolerances
+from ..error_control.tolerances import tolerances_of
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeStepLog, WholeSteps
 from ..ida.native.parameters import LOOP
@@ -71,11 +71,11 @@ class Integration:
         cls, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, capacity: int | None = None
     ) -> Integration:  # fmt: skip
         """Return the integration of a run, whose memory the dynamics keep, at consistent values."""
-        found = dynamics.kept(f"steps of {scheme.name}", capacity, lambda: cls(scheme, dynamics, capacity))
+        found = dynamics.once(cls, scheme, capacity, name=scheme.name)
         found._begin_run(start, grid, settings)
         return found
 
-    def __init__(self, scheme: Scheme, dynamics: Dynamics, capacity: int | None) -> None:
+    def __init__(self, dynamics: Dynamics, scheme: Scheme, capacity: int | None) -> None:
         system, eliminated = dynamics.system, dynamics.eliminated
         self.scheme, self._dynamics, self._n_q, n = scheme, dynamics, system.n_q, system.n_q + system.n_u
         self.capacity = capacity = capacity or max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
@@ -123,7 +123,7 @@ class Integration:
         self._whole_steps.forget()
         if self._linear:
             self._linear.forget()
-        self.atol[:] = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
+        self.atol[:] = dynamics.once(tolerances_of, settings)
         cells["project"], cells["rtol"] = settings.projection, settings.rtol
         cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
         cells["shortest"] = CONTROL.shortest * (grid.end - grid.start)

@@ -48,8 +48,8 @@ def driven(
     driver: Driver | None = None,
 ) -> Driven:  # fmt: skip
     """Return the equations with their engine, which the dynamics keep under the name `memory`; with BDF by default."""
-    chosen, made = control or CHOSEN[dynamics.system.of_body.dimensions], driver or driven_natively
-    return dynamics.kept(memory, (settings, chosen), lambda: made(dynamics, settings, chosen))
+    chosen = control or CHOSEN[dynamics.system.of_body.dimensions]
+    return dynamics.once(driver or driven_natively, settings, chosen, name=memory)
 
 
 def driven_natively(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> Driven:

@@ -39,7 +39,7 @@ def by_sparse_lu(job: Job) -> Job:
     equations = Equations(FORMULATIONS[job.settings.formulation](job.settings), dynamics.system, dynamics.coordinates)
     matrix = SparseLU(equations.n, *equations.pattern, elimination_order(equations))
     engine = partial(NativeEngine, equations, dynamics, matrix, job.settings, control)
-    dynamics.kept("bdf", (job.settings, control), lambda: Driven(equations, matrix.cost, engine))
+    dynamics.once(lambda *_: Driven(equations, matrix.cost, engine), job.settings, control, name="bdf")
     return job
 
 

@@ -45,7 +45,9 @@ def switches_in_a_note():
 
 def mechanism():
     """Return dynamics of 100 unknowns and 6000 operations."""
-    return Record(kept=lambda *_: 100, system=Record(n_operations=lambda _: 6000, size=1.0))
+    none, half = np.zeros(0, dtype=bool), np.ones(50, dtype=bool)
+    coordinates = Record(independent=half, independent_u=half, satisfied=none)
+    return Record(coordinates=coordinates, system=Record(active=none, n_operations=lambda _: 6000, size=1.0))
 
 
 def of_five_stages(name):
