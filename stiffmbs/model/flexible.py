@@ -296,7 +296,7 @@ class _Parts:
         return found
 
     def _numbers(self, frame: Body) -> np.ndarray:
-        """Return the numbers of `stiffmbs.compile.machine.native.flexible.sums`."""
+        """Return the numbers of `stiffmbs.compile.machine.flexible.sums`."""
         reduced, n = self._reduced, BY_BODY * self._count
         to_axes = np.array(matrix(frame.principal_axes())).T
         offset = np.zeros(3)

@@ -21,7 +21,7 @@ from stiffmbs.dynamics.native import block_systems, consistent
 from stiffmbs.dynamics.native import dynamics as native
 from stiffmbs.dynamics.native import projection as native_projection
 from stiffmbs.dynamics.native import stiff_projection as native_stiff_projection
-from stiffmbs.solve.ida.starting.native import start
+from stiffmbs.solve.ida.native import start
 from tests.decisions.common import BELOW, Record, nothing
 from tests.interpreted import interpreted
 from tests.parameters import EXAMPLES

@@ -8,9 +8,9 @@ from unittest.mock import patch
 import numpy as np
 
 from stiffmbs.compile.machine import compiler, finish
+from stiffmbs.compile.machine.beams import screws
 from stiffmbs.compile.machine.geometry import common_normal, ellipsoids
 from stiffmbs.compile.machine.native import evaluate, factors, rotation_vector
-from stiffmbs.compile.machine.native.beams import screws
 from tests.decisions.common import BELOW, Reached, Record, executed, nothing, reach, reached
 from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -171,9 +171,9 @@ DECISIONS = {
     "compile.machine.geometry.ellipsoids:CORE": thickness_of_a_core,
     "compile.machine.finish:Finishing.patience": lambda: round(sum(waits_for_drafts()), 6),
     "compile.machine.finish:Finishing.pause": lambda: waits_for_drafts()[0],
-    "compile.machine.native.beams.screws:TERMS": lambda: terms_of(1e3),
-    "compile.machine.native.beams.screws:NEGLIGIBLE": lambda: count_while(lambda x: terms_of(x) > 1, BELOW),
-    "compile.machine.native.beams.section:MOST": lambda: executed("compile.machine.native.beams.section").NODES,
+    "compile.machine.beams.screws:TERMS": lambda: terms_of(1e3),
+    "compile.machine.beams.screws:NEGLIGIBLE": lambda: count_while(lambda x: terms_of(x) > 1, BELOW),
+    "compile.machine.beams.section:MOST": lambda: executed("compile.machine.beams.section").NODES,
     "compile.machine.native.evaluate:FARTHEST": largest_angle_of_a_quad,
     "compile.machine.native.factors:KEEP_DIAGONAL": smallest_diagonal_pivot,
     "compile.machine.native.factors:TOO_SMALL": smallest_previous_pivot,
@@ -193,8 +193,8 @@ EXPECTED = {
     "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
     "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,
     "compile.machine.geometry.ellipsoids:CORE": 0.5, "compile.machine.finish:Finishing.patience": 2.2, "compile.machine.finish:Finishing.pause": 0.2,
-    "compile.machine.native.beams.screws:TERMS": 17, "compile.machine.native.beams.screws:NEGLIGIBLE": 274,
-    "compile.machine.native.beams.section:MOST": 690, "compile.machine.native.evaluate:FARTHEST": 27,
+    "compile.machine.beams.screws:TERMS": 17, "compile.machine.beams.screws:NEGLIGIBLE": 274,
+    "compile.machine.beams.section:MOST": 690, "compile.machine.native.evaluate:FARTHEST": 27,
     "compile.machine.native.factors:KEEP_DIAGONAL": 13, "compile.machine.native.factors:TOO_SMALL": 40,
     "compile.machine.native.factors:LIGHT": 80, "compile.machine.native.factors:COUPLES": 13,
     "compile.machine.native.factors:SPREAD_OVER": 4, "compile.machine.native.rotation_vector:NEAR": 13,

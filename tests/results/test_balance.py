@@ -8,7 +8,7 @@ import pytest
 import stiffmbs
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.read_scene import read_scene
-from stiffmbs.solve.ida.starting import starts
+from stiffmbs.solve.ida import starts
 from stiffmbs.tuning import parameters_of
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 from tests.stress.mechanisms.pendulum import bar_rate, swing

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import simulation
-from stiffmbs.solve.ida.starting.starts import Starts
+from stiffmbs.solve.ida.starts import Starts
 from stiffmbs.studies.stepping import STEPPING, ImplicitSteps, StartedSteps
 
 TOP = """

@@ -37,7 +37,7 @@ GEOMETRY = f"{__package__}.geometry"
 """Modules called by the sources of contacts between solids."""
 SERIES = "rotation_vector("
 """Call in generated sources with a short loop that should be unrolled to a polynomial (bushings)."""
-FLEXIBLE = ".native.flexible."
+FLEXIBLE = ".machine.flexible."
 """Name in generated sources with short loops over the modes of a flexible body, whose number is a literal."""
 CALLS_WITH_LOOPS = (SERIES, GEOMETRY)
 """Parts of generated sources whose functions have loops; all others are straight code."""
@@ -103,7 +103,7 @@ def _called(with_geometry: bool) -> str:
     here = Path(__file__).parent
     names = ("access", "nonsmooth", "quads", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names]
-    files += [file for folder in ("flexible", "beams") for file in python_files(here / "native" / folder)]
+    files += [file for folder in ("flexible", "beams") for file in python_files(here / folder)]
     elements = here.parents[1] / "elements"
     files += [here / "layout.py", elements / "spatial/flexible/layout.py", elements / "forces/beam_layout.py"]
     return digest_of(files + python_files(here / "geometry") * with_geometry)

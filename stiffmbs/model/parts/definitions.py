@@ -21,7 +21,7 @@ from .options import OPTIONS, choices_of
 from .placing import NAMED
 from .vectors import Vectors, in_components, parameters_in_components
 
-FOLDER = Path(__file__).with_name("shipped")
+FOLDER = Path(__file__).parents[1] / "shipped_parts"
 
 
 @functools.cache

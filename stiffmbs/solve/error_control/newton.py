@@ -1,4 +1,4 @@
-"""Stiffness of the scene, by which Newton's tolerance and long steps are chosen (`stiffmbs.solve.ida.starting.native.start`)."""
+"""Stiffness of the scene, by which Newton's tolerance and long steps are chosen (`stiffmbs.solve.ida.native.start`)."""
 
 from __future__ import annotations
 

@@ -27,11 +27,11 @@ from .session import Session
 from .statistics import Statistics, Status, StepLog, failure_sentence
 
 if TYPE_CHECKING:
-    from .starting.starts import Starts
+    from .starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64*)", level=SHORT)
 ADVANCE_PAST = Routine(
-    "stiffmbs.solve.ida.starting.native.breakpoints",
+    "stiffmbs.solve.ida.native.breakpoints",
     "advance_past",
     "int32(int64, float64*, int64, float64*, int64, int64, float64*, int64*, int64*)",
     level=SHORT,

@@ -39,7 +39,7 @@ from .statistics import Status
 if TYPE_CHECKING:
     from ...compile.inputs.features import InputFeatures
     from ...dynamics.initial import InitialValues
-    from .starting.starts import Starts
+    from .starts import Starts
 
 
 class NativeEngine(Engine):
@@ -245,7 +245,7 @@ class NativeEngine(Engine):
 
     @cached_property
     def _starts(self) -> Starts:
-        from .starting.starts import Starts
+        from .starts import Starts
 
         return Starts(self._dynamics, self.equations, self.ida, self._settings, self._control)
 

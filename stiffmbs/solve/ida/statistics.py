@@ -13,9 +13,7 @@ from .libraries import Libraries
 from .native.layouts import STEP_WIDTH
 from .native.parameters import LOOP
 
-_ADD = Routine(
-    "stiffmbs.solve.ida.starting.native.start", "add_counters", "void(int64, int64*, int64*, int64*, int64*)"
-)
+_ADD = Routine("stiffmbs.solve.ida.native.start", "add_counters", "void(int64, int64*, int64*, int64*, int64*)")
 
 COUNTERS = {
     "steps": "IDAGetNumSteps",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.solve.error_control.stability_limit import HIGHEST_ORDER
-from stiffmbs.solve.ida.starting.native.breakpoints import advance_from
+from stiffmbs.solve.ida.native.breakpoints import advance_from
 
 
 def restarts_in_a_row(count, dt, values, number, table):

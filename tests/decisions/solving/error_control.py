@@ -12,9 +12,8 @@ from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
 from stiffmbs.solve.ida import native_engine
-from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
-from stiffmbs.solve.ida.starting.native import start
-from stiffmbs.solve.ida.starting.starts import newton_bounds, polishing_bounds
+from stiffmbs.solve.ida.native import error_norm, iteration, output_correction, start
+from stiffmbs.solve.ida.starts import newton_bounds, polishing_bounds
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Record, always, nothing
 from tests.interpreted import interpreted

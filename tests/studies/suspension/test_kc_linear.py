@@ -23,7 +23,7 @@ CORNERS = {
 WHEELBASE, HEIGHT = 2.6, 0.55
 
 
-SHIPPED = Path(stiffmbs.__file__).parent / "model" / "parts" / "shipped"
+SHIPPED = Path(stiffmbs.__file__).parent / "model" / "shipped_parts"
 CENTRES = {"pushrod_wishbone": (0, 0.60, 0.23), "rigid_axle": (0, 0.74, 0.34), "twist_beam": (0, 0.74, 0.30)}
 
 

@@ -24,7 +24,7 @@ class FloatingFrame(Body):
 
     rigid: ClassVar[bool] = False
 
-    # Numbers of inertia and elasticity (`stiffmbs.compile.machine.native.flexible.sums`) with zero gravity, with an ndarray
+    # Numbers of inertia and elasticity (`stiffmbs.compile.machine.flexible.sums`) with zero gravity, with an ndarray
     # `array`.
     numbers: Any = Field(None, exclude=True, repr=False)
     modes: tuple[str, ...] = ()  # bodies with its modal coordinates

@@ -13,7 +13,7 @@ Rows of n numbers are followed by zeros up to `width`, a multiple of four (SIMD)
 The symmetric part of a matrix N, such as Z + W, has six numbers: N_xx, N_yy, N_zz, N_yz + N_zy, N_zx + N_xz and
 N_xy + N_yx. Its axial vector is N_yz - N_zy, N_zx - N_xz, N_xy - N_yx. `stretch` is the number of stretches in the
 equations, `known` or zero. `stiffened` is 1 with geometric stiffness, 0 if it is left out, and -1 for a body that has
-none. The terms are explained in `stiffmbs.compile.machine.native.flexible.sums`.
+none. The terms are explained in `stiffmbs.compile.machine.flexible.sums`.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def width(n: int) -> int:
 
 
 def work_size(n: int) -> int:
-    """Return the number of doubles that kernels use for n modes (`stiffmbs.compile.machine.native.flexible.sums`)."""
+    """Return the number of doubles that kernels use for n modes (`stiffmbs.compile.machine.flexible.sums`)."""
     return width(n) * (34 + 2 * n) + 24
 
 

@@ -24,7 +24,7 @@ from stiffmbs.solve.ida.native.output_correction import (
     output_correction_view,
 )
 from stiffmbs.solve.ida.native.parameters import LOOP
-from stiffmbs.solve.ida.starting.native.start import follow_stiffness
+from stiffmbs.solve.ida.native.start import follow_stiffness
 
 STALLED: Final = -101
 """Flag for steps that have shrunk to the rounding of the time; none of ida.h."""

@@ -49,12 +49,12 @@ START = Layout({
     "t": FLOAT_CELL, "jumps": INT_CELL, "meets": INT_CELL,
     "amplified": FLOAT_CELL, "least": FLOAT_CELL, "balanced": FLOAT_CELL, "largest_jump": FLOAT_CELL, "least_jump": FLOAT_CELL, "speed": FLOATS, "gap": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
 })  # fmt: skip
-"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
+"""Data of IDA's compiled starts (`stiffmbs.solve.ida.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
 term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
 both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave.
 
-For restarts (`stiffmbs.solve.ida.starting.native.breakpoints`): event functions, the first
+For restarts (`stiffmbs.solve.ida.native.breakpoints`): event functions, the first
 of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
 state and event functions.  Cells: size of the move; time of the restart, 1 if velocities have jumped, 1 if event functions
 of velocities change sign between both sides.  For breakpoints passed in one call:

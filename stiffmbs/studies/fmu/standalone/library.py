@@ -18,8 +18,8 @@ from ....compile.machine.object_code import GENERIC, Target
 from ....compile.machine.routines import Routine
 from ....errors import InputError
 
-C_CODE = Path(__file__).parent / "c"
-HEADERS = C_CODE / "fmi"
+C_CODE = Path(__file__).parents[1] / "c"
+HEADERS = C_CODE.with_name("fmi_headers")
 """Headers of the FMI standard, as published."""
 SOURCES = ("instance.c", "fmu2.c", "fmu3.c")
 OPTIONS = ("-shared", "-fPIC", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fno-math-errno", "-s")

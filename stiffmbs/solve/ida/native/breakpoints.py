@@ -14,14 +14,7 @@ from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
-from stiffmbs.solve.ida.starting.native.start import (
-    accelerated,
-    begun,
-    brought_back,
-    keep_counters,
-    prepare,
-    start_view,
-)
+from stiffmbs.solve.ida.native.start import accelerated, begun, brought_back, keep_counters, prepare, start_view
 
 UNFINISHED: Final = -1
 """Result of a restart that has no consistent values, or that is left to Python."""

@@ -6,9 +6,8 @@ without load, the stiffness by rows, the ratio of viscous to elastic stiffness, 
 section's forces: three translations and rotations, in the plane two and one.
 """
 
-from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.beams.dual import of_screws
-from stiffmbs.compile.machine.native.beams.nodes import (
+from stiffmbs.compile.machine.beams.dual import of_screws
+from stiffmbs.compile.machine.beams.nodes import (
     node,
     node_view,
     place_in_plane,
@@ -16,7 +15,8 @@ from stiffmbs.compile.machine.native.beams.nodes import (
     relative_screw,
     relative_tangents,
 )
-from stiffmbs.compile.machine.native.beams.screws import series, square, tangent, tangent_slope
+from stiffmbs.compile.machine.beams.screws import series, square, tangent, tangent_slope
+from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.vectors import clear, cross, times
 from stiffmbs.elements.forces.beam_layout import OF_NODE, SCREW
 

@@ -5,8 +5,7 @@ The strain energy is U = 1/2 sum stiffness_k p_k^2 with p = y + sum_i b_i y^T Ga
 forces, two more, and two of factors of the stretches.
 """
 
-from stiffmbs.compile.machine.native.access import compiled, has_derivative, shifted
-from stiffmbs.compile.machine.native.flexible.sums import (
+from stiffmbs.compile.machine.flexible.sums import (
     DAMPING,
     STIFFNESS,
     add_rows,
@@ -21,6 +20,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     stretches,
     width,
 )
+from stiffmbs.compile.machine.native.access import compiled, has_derivative, shifted
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.vectors import clear
 

@@ -1,8 +1,7 @@
-"""Forces, mass matrix and energies of a flexible body in a floating frame (`stiffmbs.compile.machine.native.flexible.sums`)."""
+"""Forces, mass matrix and energies of a flexible body in a floating frame (`stiffmbs.compile.machine.flexible.sums`)."""
 
-from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.flexible.elastic import add_coupling, elastic_forces, strain_rates, strains
-from stiffmbs.compile.machine.native.flexible.sums import (
+from stiffmbs.compile.machine.flexible.elastic import add_coupling, elastic_forces, strain_rates, strains
+from stiffmbs.compile.machine.flexible.sums import (
     AXIAL,
     AXIAL_RATE,
     AXIAL_RATE_OF_Z,
@@ -24,6 +23,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     rigid_momentum,
     width,
 )
+from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.vectors import clear, cross, dot, times, transposed_times
 
 

@@ -11,7 +11,7 @@ The layout of the numbers of a body, and the components of matrices N = sum m r 
 `stiffmbs.elements.spatial.flexible.layout`. Vectors are in body axes, apart from gravity. Other matrices have nine
 entries by rows. Loops run over the modes of a row, so that the compiler uses SIMD instructions.
 
-The array `work` has nine rows for elastic forces (`stiffmbs.compile.machine.native.flexible.elastic`), the modal
+The array `work` has nine rows for elastic forces (`stiffmbs.compile.machine.flexible.elastic`), the modal
 accelerations, and the vectors Gamma_i y and Gamma_i y'. Sums over the first mode of numbers of pairs follow. Those by
 modal coordinates are N_k and D_k. Those by modal velocities are the rates of the axial vectors of N_k and Z, and of D_k.
 Those by accelerations are of D_k. Last are the moments of `moments_view`.

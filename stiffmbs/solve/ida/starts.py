@@ -7,28 +7,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....compile.equations import ABSENT, Equations
-from ....compile.machine.layout import DTYPES, fill, packed
-from ....compile.machine.object_code import SHORT
-from ....compile.machine.routines import Routine, together
-from ....compile.state import SETS
-from ....dynamics.dynamics import Dynamics
-from ....model.settings import RunSettings
-from ...engine import Begun
-from ...error_control.error_test import ErrorControl
-from ...error_control.native.parameters import NEWTON, POLISHING
-from ...error_control.newton import RowSums, row_sums_of
-from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
-from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
-from ..native.layouts import START
-from ..statistics import failure_sentence
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import DTYPES, fill, packed
+from ...compile.machine.object_code import SHORT
+from ...compile.machine.routines import Routine, together
+from ...compile.state import SETS
+from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
+from ..engine import Begun
+from ..error_control.error_test import ErrorControl
+from ..error_control.native.parameters import NEWTON, POLISHING
+from ..error_control.newton import RowSums, row_sums_of
+from ..error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
+from ..events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
+from .native.layouts import START
+from .statistics import failure_sentence
 
 if TYPE_CHECKING:
-    from ....dynamics.initial import InitialValues
-    from ...stiff_rows import States
-    from ..ida import NativeIda
+    from ...dynamics.initial import InitialValues
+    from ..stiff_rows import States
+    from .ida import NativeIda
 
-START_MODULE, RESTART_MODULE = (f"stiffmbs.solve.ida.starting.native.{name}" for name in ("start", "breakpoints"))
+START_MODULE, RESTART_MODULE = (f"stiffmbs.solve.ida.native.{name}" for name in ("start", "breakpoints"))
 _START, _RESUME = together(
     START_MODULE, SHORT, start="int32(float64, int64, int64, int64*)", resume="int32(float64, int64, int64*)"
 )

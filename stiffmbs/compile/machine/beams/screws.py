@@ -5,8 +5,7 @@ cos)/theta^2 and c = (theta - sin)/theta^3. The inverse has b = -1/2 and c = e =
 Selig, Geometric Fundamentals of Robotics (2005), ch. 4; Sonneville, Cardona, Bruls (2014).
 """
 
-from stiffmbs.compile.machine.native.access import compiled, room
-from stiffmbs.compile.machine.native.beams.dual import (
+from stiffmbs.compile.machine.beams.dual import (
     add_cross,
     add_diagonal,
     add_outer,
@@ -16,6 +15,7 @@ from stiffmbs.compile.machine.native.beams.dual import (
     product,
     set_number,
 )
+from stiffmbs.compile.machine.native.access import compiled, room
 from stiffmbs.compile.machine.native.vectors import clear
 
 TERMS = 18

@@ -1,12 +1,11 @@
-"""Derivatives of the forces and of inertia of a flexible body (`stiffmbs.compile.machine.native.flexible.inertia`).
+"""Derivatives of the forces and of inertia of a flexible body (`stiffmbs.compile.machine.flexible.inertia`).
 
 Matrices are by rows: three of the frame's position, three of its rotation, and the modes. Derivatives by the pose have
 4 + n columns, the quaternion and the modes; those by velocities 3 + n, the angular velocity and modal velocities.
 """
 
-from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.flexible.elastic import add_elastic_slopes
-from stiffmbs.compile.machine.native.flexible.sums import (
+from stiffmbs.compile.machine.flexible.elastic import add_elastic_slopes
+from stiffmbs.compile.machine.flexible.sums import (
     ACCELERATIONS,
     AXIAL,
     AXIAL_RATE,
@@ -31,6 +30,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     take_acceleration_sums,
     width,
 )
+from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.vectors import clear, cross, times, transposed_times
 
 

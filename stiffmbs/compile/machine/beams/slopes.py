@@ -1,14 +1,13 @@
-"""Derivatives of the forces of a beam section (`stiffmbs.compile.machine.native.beams.section`).
+"""Derivatives of the forces of a beam section (`stiffmbs.compile.machine.beams.section`).
 
 Matrices have a column for each velocity of the bodies: six, or three in the plane. Derivatives by quaternions follow from
 those by rotations about the axes of a body.
 """
 
-from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.beams.dual import of_screws, of_wrenches
-from stiffmbs.compile.machine.native.beams.nodes import node, node_view
-from stiffmbs.compile.machine.native.beams.screws import second_slope, series, square, square_rate, tangent_slope
-from stiffmbs.compile.machine.native.beams.section import (
+from stiffmbs.compile.machine.beams.dual import of_screws, of_wrenches
+from stiffmbs.compile.machine.beams.nodes import node, node_view
+from stiffmbs.compile.machine.beams.screws import second_slope, series, square, square_rate, tangent_slope
+from stiffmbs.compile.machine.beams.section import (
     COLUMNS,
     NODES,
     component,
@@ -21,6 +20,7 @@ from stiffmbs.compile.machine.native.beams.section import (
     strain,
     stretch,
 )
+from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.vectors import clear, times, transposed_times
 
 SIX_ROWS, TWELVE_ROWS, ALL_ROWS = 6 * COLUMNS, 12 * COLUMNS, COLUMNS * COLUMNS

@@ -6,9 +6,9 @@ with P = T(xi)^-1 and Q = -T(-xi)^-1. Twists are (omega, v), and wrenches (m, n)
 
 from math import cos, sqrt
 
+from stiffmbs.compile.machine.beams.dual import of_screws
+from stiffmbs.compile.machine.beams.screws import of_inverse, square, tangent
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
-from stiffmbs.compile.machine.native.beams.dual import of_screws
-from stiffmbs.compile.machine.native.beams.screws import of_inverse, square, tangent
 from stiffmbs.compile.machine.native.rotation_vector import rotation_vector
 from stiffmbs.compile.machine.native.vectors import clear, cross, times, transposed_times
 from stiffmbs.elements.forces.beam_layout import NODE, OF_NODE

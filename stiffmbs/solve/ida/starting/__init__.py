@@ -1,1 +1,0 @@
-"""Starts of IDA: at consistent values, after events and breakpoints, and after jumps of inputs."""
