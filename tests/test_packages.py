@@ -19,7 +19,7 @@ ORDER = (
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts", "methods", "notes", "processes", "solver_names", "tuning"}
-MOST_FILES = 25
+MOST_FILES, DEEPEST = 25, 3
 MODULES = {(ROOT.name, *path.relative_to(ROOT).with_suffix("").parts): path for path in sorted(ROOT.glob("**/*.py"))}
 
 
@@ -194,3 +194,10 @@ def test_a_scene_loads_few_kinds_of_elements_that_it_does_not_use():
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert {name.rpartition(".")[2] for name in found.stdout.split()} == {"applied", "gyroscopic_torque"}
+
+
+@pytest.mark.parametrize(
+    "folder", sorted({path.parent for path in ROOT.glob("**/*.*") if "__pycache__" not in path.parts}), ids=str
+)
+def test_no_folder_lies_deeper_than_three_levels(folder):
+    assert len(folder.relative_to(ROOT).parts) <= DEEPEST
