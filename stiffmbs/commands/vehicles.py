@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -18,11 +19,13 @@ from .scene import CHANGES, assigned, in_file, is_written, option, output_option
 
 if TYPE_CHECKING:
     from ..model.scene import Scene
+    from ..studies.targets import Target
 
 Result = TypeVar("Result")
 BASE = "base"
 """Name of the scene itself among its variants."""
 VARIANT = "A variant, and a change of SCENE for it"
+TARGET = "Range of a metric, such as bump.toe=-0.005:0 or step_steer.yaw_rate_overshoot=:15"
 _COMMA = re.compile(r",(?![^\[\]]*\])")
 """Comma between changes, not within a list."""
 UNIT = "--unit DIMENSION=UNIT such as LENGTH=mm"
@@ -48,14 +51,15 @@ UNIT = "--unit DIMENSION=UNIT such as LENGTH=mm"
 )
 @option("--case NAME=SIZE ...", "Size of a load case; 0 omits it", "cases")
 @option("--variant NAME=PATH=VALUE[,...] ...", VARIANT, "variants")
+@option("--target NAME=LOW:HIGH ...", TARGET, "targets", callback=pairs)
 @option("--figure PATH", "Draw the curves: .png, .svg or .pdf.")
 @output_option("Write a page, or the curves: .html or .csv.")
 @option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @CHANGES
 def kc(
     scene: str, axle: str, points: int, body: str | None, steering: str | None, wheels: tuple[str, ...],
-    radius: float | None, cases: tuple[str, ...], variants: tuple[str, ...], figure: Path | None, output: Path | None, as_json: bool,
-    changes: list[tuple[str, str]], **vehicle: Any,
+    radius: float | None, cases: tuple[str, ...], variants: tuple[str, ...], targets: list[tuple[str, str]], figure: Path | None, output: Path | None,
+    as_json: bool, changes: list[tuple[str, str]], **vehicle: Any,
 ) -> None:  # fmt: skip
     """Sweep an axle of SCENE on a test rig by equilibria, and print its kinematics and compliance.
 
@@ -68,7 +72,9 @@ def kc(
 
     --variant NAME=PATH=VALUE compares SCENE, as base, with a changed one: a page has the curves of both.
 
-    Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
+    --target camber=-1:0 is a range of a measure, --target bump.toe=-0.005:0 one of the slope of a curve, for both sides.
+
+    Exit status: 0 done, 1 no equilibrium was found, a target is missed or a file could not be written, 2 the input is wrong.
     """
     from ..results.files import write_table
     from ..results.provenance import provenance_of
@@ -77,11 +83,13 @@ def kc(
     from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ..studies.suspension.vehicle import VehicleOptions
+    from ..studies.targets import checked_targets
 
     with refusing(scene, as_json):
         refuse_file("--figure", figure, scene, "figure")
         refuse_file("-o", output, scene, "curves of an axle")
         _refuse_several(variants, output, figure)
+        asked = checked_targets(dict(targets))
         scenes = _variants(scene, changes, variants)
         with in_file(scene):
             given = VehicleOptions(**vehicle)
@@ -90,20 +98,21 @@ def kc(
                 name: kinematics_and_compliance(loaded, axle, points, body, steering, wheels, radius, given, **sizes)
                 for name, loaded in scenes.items()
             }
+    wanted = _Judged.of(every, asked)
     origins = {name: provenance_of(loaded) for name, loaded in scenes.items()}
     found, origin = next(iter(every.values())), next(iter(origins.values()))
 
     def write_curves(path: Path) -> None:
         """Write the page, or the table."""
         if path.suffix == ".html":
-            write_kc(path, every, origins)
+            write_kc(path, every, origins, wanted.found)
         else:
             write_table(path, kc_csv(found), origin)
 
     written = is_written(output, write_curves)
     written = is_written(figure, lambda path: write_sheet(path, kc_figure(found), origin=origin)) and written
-    _print(every, as_json, lambda one: one.as_dict(scene), lambda one: kc_text(scene, one))
-    sys.exit(0 if written else Status.FAILED)
+    _print(every, wanted, as_json, lambda one: one.as_dict(scene), lambda one: kc_text(scene, one))
+    sys.exit(wanted.status(written))
 
 
 @click.command(short_help="Peaks of all bushings' loads over load cases.")
@@ -156,6 +165,7 @@ def _case(text: str, option: str = "--case") -> tuple[str, list[tuple[str, str]]
 @option("--length FLOAT", "Length of the vehicle, m; by default 1.6 wheelbases.")
 @option("--workers INTEGER RANGE", "Number of processes; by default one for each core.")
 @option("--variant NAME=PATH=VALUE[,...] ...", VARIANT, "variants")
+@option("--target NAME=LOW:HIGH ...", TARGET, "targets", callback=pairs)
 @option(
     "--set-test NAME=VALUE ...",
     "Change a parameter of a test, such as step_steer.speed='100 km/h', or of each test that has it, speed=30",
@@ -167,7 +177,8 @@ def _case(text: str, option: str = "--case") -> tuple[str, list[tuple[str, str]]
 @CHANGES
 def handling(
     scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
-    length: float | None, workers: int | None, variants: tuple[str, ...], parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+    length: float | None, workers: int | None, variants: tuple[str, ...], targets: list[tuple[str, str]], parameters: list[tuple[str, str]],
+    output: Path | None, as_json: bool, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Drive the car of SCENE through tests of the standards, and print their metrics.
 
@@ -177,27 +188,57 @@ def handling(
 
     --variant stiffer=parts.bar.k=2100 compares SCENE, as base, with a changed one: the page has both in its tables and charts.
 
-    Exit status: 0 done, 1 a test was not done or the page could not be written, 2 the input is wrong.
+    --target step_steer.yaw_rate_overshoot=:15 is a range of a metric, in its unit or with another one.
+
+    Exit status: 0 done, 1 a test was not done, a target is missed or the page could not be written, 2 the input is wrong.
     """
     from ..results.provenance import provenance_of
     from ..show.handling import handling_text, write_handling
+    from ..studies.handling.standards import TESTS
     from ..studies.handling.study import handling as handled
+    from ..studies.targets import checked_targets
 
     chosen: dict[str, Any] = {"body": body, "steering": steering, "width": width, "length": length, "workers": workers}
     with refusing(scene, as_json):
         refuse_file("-o", output, scene, "report")
+        asked = checked_targets(dict(targets), tests or TESTS)
         scenes = _variants(scene, changes, variants)
         with in_file(scene):
             found = {
                 name: handled(loaded, tests or None, parameters=dict(parameters), **chosen)
                 for name, loaded in scenes.items()
             }
+    wanted = _Judged.of(found, asked)
     origins = {name: provenance_of(loaded) for name, loaded in scenes.items()}
     units = next(iter(scenes.values())).units
-    written = is_written(output, lambda path: write_handling(path, found, origins, units))
-    _print(found, as_json, lambda one: one.as_dict(scene), lambda one: handling_text(scene, one))
+    written = is_written(output, lambda path: write_handling(path, found, origins, units, wanted.found))
+    _print(found, wanted, as_json, lambda one: one.as_dict(scene), lambda one: handling_text(scene, one))
     done = not any(test.message for one in found.values() for test in one.tests.values())
-    sys.exit(0 if written and done else Status.FAILED)
+    sys.exit(wanted.status(written and done))
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """Targets of all variants, or why a target cannot be judged."""
+
+    found: dict[str, Sequence[Target]]
+    trouble: str = ""
+
+    @classmethod
+    def of(cls, results: Mapping[str, Any], asked: Mapping[str, str]) -> _Judged:
+        """Return the targets with the values of results; the results remain if a target cannot be judged."""
+        try:
+            return cls({name: one.judged(asked) for name, one in results.items()})
+        except InputError as error:
+            return cls({}, str(error))
+
+    def status(self, done: bool) -> int:
+        """Return the exit status of a command that is otherwise done, and print what is wrong with a target."""
+        if self.trouble:
+            click.echo(f"stiffmbs: {self.trouble}", err=True)
+            return Status.WRONG_INPUT
+        met = all(target.met for targets in self.found.values() for target in targets)
+        return Status.DONE if done and met else Status.FAILED
 
 
 def _refuse_several(variants: tuple[str, ...], output: Path | None, figure: Path | None) -> None:
@@ -209,15 +250,22 @@ def _refuse_several(variants: tuple[str, ...], output: Path | None, figure: Path
 
 
 def _print(
-    found: Mapping[str, Result], as_json: bool, content: Callable[[Result], object], text: Callable[[Result], str]
-) -> None:
+    found: Mapping[str, Result], judged: _Judged, as_json: bool, content: Callable[[Result], dict[str, object]],
+    text: Callable[[Result], str],
+) -> None:  # fmt: skip
     """Print the results of all variants, as JSON by their names or as text below them; a single result has no name."""
+    from ..show.page.targets import target_lines, targets_as_dict
+
     if as_json:
-        contents = {name: content(one) for name, one in found.items()}
+        contents = {
+            name: content(one) | ({"targets": targets_as_dict(of)} if (of := judged.found.get(name)) else {})
+            for name, one in found.items()
+        }
         click.echo(json.dumps(contents.get("", contents)))
         return
     for name, one in found.items():
-        click.echo(f"variant {name}\n{text(one)}" if name else text(one))
+        lines = [text(one), *target_lines(judged.found.get(name, ()))]
+        click.echo("\n".join([f"variant {name}", *lines] if name else lines))
 
 
 def _variants(scene: str, changes: list[tuple[str, str]], variants: tuple[str, ...]) -> dict[str, Scene]:

@@ -17,16 +17,16 @@ from ..studies.handling.known import Metrics
 from ..studies.handling.standards import TESTS
 from ..studies.handling.steering_inputs import BAR_OF
 from ..studies.handling.study import Handling, Tested
+from ..studies.targets import YES_OR_NO
 from .force_table import with_bar
 from .handling_charts import handling_charts
 from .page.page_of_tests import MINUS, Judgement, change, heads, page_of_tests, written_unit
+from .page.targets import Targets, target_sections, with_targets
 from .sections import MISSING, Section, Table
 
 if TYPE_CHECKING:
     from ..results.provenance import Provenance
 
-YES_OR_NO = " (1 yes, 0 no)"
-"""End of the names of metrics that are answers."""
 NOT_REACHED = "not reached"
 UNITS = {"angle": "deg", "velocity": "km/h"}
 """Units of the page, unless the scene chooses others."""
@@ -61,12 +61,13 @@ def _measured(found: Handling) -> str:
 
 
 def write_handling(
-    path: Path, variants: Mapping[str, Handling], origins: Mapping[str, Provenance | None], units: Mapping[str, str]
-) -> None:
+    path: Path, variants: Mapping[str, Handling], origins: Mapping[str, Provenance | None], units: Mapping[str, str],
+    targets: Targets | None = None,
+) -> None:  # fmt: skip
     """Write the page of all tests of one or several variants of a car, completely or not at all.
 
     `variants`: by name; a single one may have no name. `origins`: those of their results. `units`: units by dimension that
-    the scene chooses. Raises OSError if the file cannot be written.
+    the scene chooses. `targets`: those of the variants. Raises OSError if the file cannot be written.
     """
     display = DisplayUnits({**UNITS, **units})
     found = next(iter(variants.values()))
@@ -75,8 +76,10 @@ def write_handling(
         ("Track", f"{found.car.track:.4g} m"),
         ("Steering", _steered(found)),
     )
-    sections = [_section(variants, name, display) for name in found.tests]
-    write_text(path, page_of_tests("Handling tests", found.name, facts, _judged(variants), sections, origins))
+    wanted = targets or {}
+    sections = [*target_sections(wanted), *(_section(variants, name, display) for name in found.tests)]
+    judged = with_targets(_judged(variants), wanted)
+    write_text(path, page_of_tests("Handling tests", found.name, facts, judged, sections, origins))
 
 
 def _judged(variants: Mapping[str, Handling]) -> Judgement:

@@ -11,6 +11,7 @@ from ..model.paths.lanes import STANDARDS, path_through
 from ..reading.units.display import DisplayUnits
 from ..studies.handling.known import SEEN, Run
 from ..studies.handling.lane_changes import BEFORE, PART_1, PART_2
+from ..studies.handling.metrics import at_zero
 from ..studies.handling.standards import TESTS
 from ..studies.handling.steering_inputs import response_of_sweeps
 from ..studies.handling.study import Handling
@@ -19,6 +20,8 @@ from .page.page_of_tests import written_unit
 
 COURSES = {"lane_change": PART_1, "obstacle_avoidance": PART_2}
 """Courses with cones, by test."""
+RAMP = "constant_speed"
+"""Test whose charts show the tangents at zero lateral acceleration."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +68,17 @@ def handling_charts(variants: Mapping[str, Handling], name: str, display: Displa
             Curve("", _shown(across, found, run, display), _shown(upwards, found, run, display), f"c{k % 4}")
             for k, found, run in runs
         ]
+        if name == RAMP:
+            curves += [_tangent(curve) for curve in curves]
         charts.append(curve_chart(curves, upwards.title(display), across.title(display)))
     return charts
+
+
+def _tangent(curve: Curve) -> Curve:
+    """Return the tangent at zero lateral acceleration, whose slope is the gradient of the test."""
+    value, slope = at_zero(curve.x, curve.y)
+    x = np.array([0.0, curve.x[-1]])
+    return Curve("", x, value + slope * x, "path")
 
 
 def _shown(quantity: Quantity, found: Handling, run: Run, display: DisplayUnits) -> np.ndarray:

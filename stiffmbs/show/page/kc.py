@@ -10,10 +10,12 @@ import numpy as np
 
 from ...results.files import write_text
 from ...studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
+from ...studies.targets import Target
 from ..curves import Curve, curve_chart
 from ..sections import MISSING, Section, Table
 from ..suspension import PANELS, ROUNDING, SHOWN, Panel, curves_of, kc_words, measure_rows, slope_rows, unit_of, worded
 from .page_of_tests import Judgement, change, heads, page_of_tests, written_unit
+from .targets import Targets, target_sections, with_targets
 
 if TYPE_CHECKING:
     from ...results.provenance import Provenance
@@ -26,16 +28,21 @@ TITLES = {
 """Titles of the load cases."""
 
 
-def write_kc(path: Path, variants: Variants, origins: Mapping[str, Provenance | None]) -> None:
-    """Write the page, completely or not at all. `variants`: by name; a single one may have no name.
+def write_kc(
+    path: Path, variants: Variants, origins: Mapping[str, Provenance | None], targets: Targets | None = None
+) -> None:
+    """Write the page, completely or not at all.
 
-    Raises OSError if the file cannot be written.
+    `variants`: by name; a single one may have no name. `targets`: those of the variants; charts show the slopes of a range. Raises OSError if the file cannot be written.
     """
     first = next(iter(variants.values()))
-    sections = [_described(variants), *(_of_case(variants, case) for case in TITLES if _has(variants, case))]
+    wanted = targets or {}
+    slopes = {each.name: each for each in next(iter(wanted.values()), ())}
+    cases = (_of_case(variants, case, slopes) for case in TITLES if _has(variants, case))
+    sections = [*target_sections(wanted), _described(variants), *cases]
     page = page_of_tests(
-        "Kinematics and compliance", f"{first.name}: {first.axle.title}", (), _judged(variants), sections, origins
-    )
+        "Kinematics and compliance", f"{first.name}: {first.axle.title}", (), with_targets(_judged(variants), wanted), sections, origins
+    )  # fmt: skip
     write_text(path, page)
 
 
@@ -65,12 +72,12 @@ def _described(variants: Variants) -> Section:
     return Section("At the described heights", (), (_table(variants, tables, ""),))
 
 
-def _of_case(variants: Variants, case: str) -> Section:
+def _of_case(variants: Variants, case: str, slopes: Mapping[str, Target]) -> Section:
     """Return the section of a load case: slopes of its curves at the described heights, and charts."""
     sweep = next(found.sweeps[case] for found in variants.values() if case in found.sweeps)
     rows = [[row for row in slope_rows(found) if row[0].startswith(f"{case}: ")] for found in variants.values()]
     tables = (_table(variants, rows, f"{case}: "),) if SHOWN[case] else ()
-    charts = (chart for panel in PANELS if panel.case == case for chart in _charts(variants, panel))
+    charts = (chart for panel in PANELS if panel.case == case for chart in _charts(variants, panel, slopes))
     sentence = f"Over the {sweep.case.swept}, {written_unit(sweep.case.unit)}. Slopes at the middle."
     if len(next(iter(variants.values())).axle.wheels) == 2:
         sentence += " Solid: left, dotted: right."
@@ -97,8 +104,11 @@ def _table(variants: Variants, tables: list[list[tuple[str, ...]]], start: str) 
     return Table(("measure, left or axle", *heads(list(variants))[1:]), tuple(found))
 
 
-def _charts(variants: Variants, panel: Panel) -> Iterator[str]:
-    """Yield a chart for each measure of a panel; a variant has one colour, its right side is dotted."""
+def _charts(variants: Variants, panel: Panel, slopes: Mapping[str, Target]) -> Iterator[str]:
+    """Yield a chart for each measure of a panel; a variant has one colour, its right side is dotted.
+
+    `slopes`: targets of slopes by ``case.measure``, which are lines through the middle of the first curve.
+    """
     first = next(iter(variants.values()))
     for name in panel.shown:
         curves = [
@@ -108,7 +118,9 @@ def _charts(variants: Variants, panel: Panel) -> Iterator[str]:
             for shown, style, x, y in curves_of(found, panel)
             if shown == name
         ]
+        target = slopes.get(f"{panel.case}.{name}")
         if curves:
+            curves += _range_of_slopes(curves[0], target, panel.upright) if target else ()
             own = f"{worded(name)}, {written_unit(unit_of(first, name))}".removesuffix(", ")
             case = next(found.sweeps[panel.case].case for found in variants.values() if panel.case in found.sweeps)
             other = (
@@ -118,6 +130,17 @@ def _charts(variants: Variants, panel: Panel) -> Iterator[str]:
             )
             across, upwards = (own, other) if panel.upright else (other, own)
             yield curve_chart(curves, f"{panel.title}: {upwards}", across)
+
+
+def _range_of_slopes(curve: Curve, target: Target, upright: bool) -> Iterator[Curve]:
+    """Yield lines with the least and the largest slope of a target through the middle of a curve."""
+    over, measure = (curve.y, curve.x) if upright else (curve.x, curve.y)
+    middle = len(over) // 2
+    for slope in (target.low, target.high):
+        if np.isfinite(slope):
+            line = measure[middle] + slope * (over - over[middle])
+            x, y = (line, over) if upright else (over, line)
+            yield Curve("", x, y, "path")
 
 
 def _curve(panel: Panel, variant: int, style: str, x: np.ndarray, y: np.ndarray) -> Curve:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...errors import InputError, SolverError
 from ...model.paths.lanes import STANDARDS, Lane
+from ..targets import YES_OR_NO
 from .car import Manoeuvre
 from .known import SEEN, Known, Metrics, Run
 from .parameters import LaneChange, ObstacleAvoidance
@@ -18,7 +19,7 @@ RELEASED = 2.0
 """Distance within the first lane of ISO 3888-2 after which the throttle is released, m."""
 COASTING = 1.5
 """Duration of a run with the throttle released, relative to that at constant speed."""
-CLEARANCE, PASSED = "least distance to a cone", "passed (1 yes, 0 no)"
+CLEARANCE, PASSED = "least distance to a cone", f"passed{YES_OR_NO}"
 ENTRY = "speed at the end of the first lane"
 PART_1, PART_2 = "iso3888-1", "iso3888-2"
 

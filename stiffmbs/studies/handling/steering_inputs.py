@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..targets import YES_OR_NO
 from .car import Manoeuvre
 from .known import SEEN, Known, Metrics, Run
 from .metrics import STABLE, FrequencyResponse, first_time, frequency_response, sine_with_dwell, step_response
@@ -162,6 +163,6 @@ def of_dwell(known: Known, test: SineWithDwell, runs: list[Run]) -> Metrics:
         "largest yaw rate ratio after 1 s": (100 * worst[0], "%"),
         "largest yaw rate ratio after 1.75 s": (100 * worst[1], "%"),
         "lateral displacement, 5 A and more": (least, "m"),
-        "stable (1 yes, 0 no)": (float(worst[0] <= STABLE[0] and worst[1] <= STABLE[1]), ""),
-        "responsive (1 yes, 0 no)": (float(least >= test.displacement), ""),
+        f"stable{YES_OR_NO}": (float(worst[0] <= STABLE[0] and worst[1] <= STABLE[1]), ""),
+        f"responsive{YES_OR_NO}": (float(least >= test.displacement), ""),
     }

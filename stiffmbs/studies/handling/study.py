@@ -21,6 +21,7 @@ from ...model.settings import SteadyMotion
 from ...processes import process_pool
 from ...reading.did_you_mean import instead_of
 from ..executors import refuse_workers
+from ..targets import Metric, Target, judged
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
 from .known import SEEN, Known, Metrics, Run
 from .metrics import at_zero
@@ -73,6 +74,18 @@ class Handling:
     def __getitem__(self, test: str) -> dict[str, float]:
         """Return the values of the metrics of a test."""
         return {name: value for name, (value, _) in self.tests[test].metrics.items()}
+
+    def judged(self, targets: Mapping[str, str]) -> tuple[Target, ...]:
+        """Return targets with the values of their metrics, ``step_steer.yaw_rate_overshoot`` (`stiffmbs.studies.targets`).
+
+        Raises InputError if there is no such metric, or the text of a target is no range.
+        """
+        metrics = {
+            f"{test}.{name}": Metric({"": value}, unit)
+            for test, one in self.tests.items()
+            for name, (value, unit) in one.metrics.items()
+        }
+        return judged(targets, metrics)
 
     def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs handling --json``; values without a number are null."""

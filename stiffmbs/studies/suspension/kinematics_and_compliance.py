@@ -13,6 +13,7 @@ from ...analyses.job import Runnable, data_of, prepare
 from ...errors import InputError, refuse_text
 from ...reading.did_you_mean import did_you_mean
 from ...reading.table import Table
+from ..targets import Metric, Target, judged
 from .axle import Axle, axle_of
 from .characteristics import UNITS, Hub, Pose, Setup, displacements, of_axle, of_steering_axis, of_travel, setup_of
 from .rig import centre, inputs_of, on_rig, pad
@@ -149,6 +150,23 @@ class KinematicsAndCompliance:
         if name == "steering_ratio":
             return "" if self.angular else "mm/deg"
         return UNITS[name]
+
+    def judged(self, targets: Mapping[str, str]) -> tuple[Target, ...]:
+        """Return targets with the values of their measures (`stiffmbs.studies.targets`).
+
+        ``toe`` is a measure at the described heights, ``bump.toe`` the slope of a curve there, of both sides of the axle.
+        Raises InputError if there is no such measure, or the text of a target is no range.
+        """
+        found: dict[str, Metric] = {}
+        for channel, value in self.measures.items():
+            side, _, name = channel.partition(".")
+            found.setdefault(name, Metric({}, self.unit(channel))).values[side] = value
+        for case, sweep in self.sweeps.items():
+            for channel in sweep.channels:
+                side, _, name = channel.partition(".")
+                unit = f"{self.unit(channel) or '1'}/{sweep.case.unit}"
+                found.setdefault(f"{case}.{name}", Metric({}, unit)).values[side] = sweep.slope(channel)
+        return judged(targets, found)
 
     def asymmetry(self) -> float:
         """Return the largest difference between left and right, relative to the largest value of the curve or 1.
