@@ -15,7 +15,7 @@ from ..element import CompiledTerms, Force
 from ..turns import WithinHalfATurn
 from .beam_strain import BEYOND, DOUBT, DampingRatio
 
-NATIVE = "stiffmbs.compile.machine.native"
+MACHINE = "stiffmbs.compile.machine"
 CALLS = {
     "f": ("section", "add_forces", "{state}, {to}"),
     "f_q": ("slopes", "add_force_slopes", "{space}, {damped}, {n}, {bodies}, {rest}, {to}, {f_u}"),
@@ -105,8 +105,8 @@ class _Form:
         called = [(CALLS[name], to[name]) for name in places if name in CALLS]
         imports = dict.fromkeys(f"beams.{module} import {function}" for (module, function, _), _ in called)
         lines = [
-            f"from {NATIVE}.access import room, shifted",
-            *(f"from {NATIVE}.{each}" for each in imports),
+            f"from {MACHINE}.native.access import room, shifted",
+            *(f"from {MACHINE}.{each}" for each in imports),
             "", "",
             "def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value):",
             f"    slots = room({n})  # of the nodes among the bodies, whose turn[0:9] is read",

@@ -11,7 +11,7 @@ from ...element import CompiledTerms, Force
 from .bodies import FloatingFrame
 from .layout import BODY, work_size
 
-NATIVE = "stiffmbs.compile.machine.native"
+MACHINE = "stiffmbs.compile.machine"
 
 KERNELS = {
     "inertia": ("add_forces", "add_inertia", "kinetic_energy", "potential_energy", "dissipated_power"),
@@ -84,8 +84,8 @@ class _Form:
         )
         calls = (CALLS[name].format(n=self.n) for name in CALLS if name in places)
         return "\n".join([
-            f"from {NATIVE}.access import room, shifted",
-            *(f"from {NATIVE}.flexible.{module} import {', '.join(names)}" for module, names in KERNELS.items()),
+            f"from {MACHINE}.native.access import room, shifted",
+            *(f"from {MACHINE}.flexible.{module} import {', '.join(names)}" for module, names in KERNELS.items()),
             "", "",
             "def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value):",
             f"    work = room({work_size(self.n)})",
