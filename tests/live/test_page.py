@@ -109,6 +109,24 @@ def test_a_slider_moves_the_curve_and_writes_its_value(tab, opened):
     assert "L: 0.6 m" in tab.run("LIVE.editor.state.doc.toString()") and curve(tab) == before
 
 
+def test_a_pinned_run_stays_behind_those_that_follow(tab, opened):
+    opened(TEXT)
+    before, press = curve(tab), "document.getElementById('pin').click()"
+    tab.run(press)
+    replace(tab, "mass: 10 kg", "mass: 30 kg")
+    assert tab.run("shown.data.runs.map((run) => run.name)") == ["now", "pinned"]
+    assert curve(tab) != before
+    first = "shown.data.runs[{}].bodies.cart[0]"
+    assert tab.run(f"{first.format(0)}[40] !== {first.format(1)}[40]")
+    assert tab.run("document.querySelector('.legend').textContent").startswith("nowpinned")
+    replace(tab, "mass: 30 kg", "mass: 10 kg")  # the pinned run again
+    assert tab.run(f"Math.abs({first.format(0)}[40] - {first.format(1)}[40])") < 1e-4
+    tab.run(press)
+    assert tab.run("shown.data.runs.length") == 1
+    replace(tab, "mass: 10 kg", "mass: 20 kg")
+    assert tab.run("shown.data.runs.length") == 1
+
+
 def test_every_text_has_the_contrast_of_wcag_with_and_without_an_error(tab, opened):
     opened(TEXT)
     assert tab.run(browser.FAINT) == []

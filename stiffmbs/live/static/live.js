@@ -382,6 +382,13 @@ const LIVE = (() => {
     $("of").onchange = bounds;
     $("sweeper").onsubmit = sweep;
     $("noband").onclick = () => it.shown?.plotted.band([]);
+    $("pin").onclick = () => {
+      if (!it.shown) return;
+      const on = $("pin").getAttribute("aria-pressed") !== "true";
+      it.shown.pin(on);
+      $("pin").setAttribute("aria-pressed", on);
+      $("pin").textContent = on ? "Unpin" : "Pin run";
+    };
     $("export").onchange = (e) => { const choice = e.target.value; e.target.value = ""; if (choice) exported(choice); };
     $("stop").onclick = () => post("job", { page, what: "stop" }).catch(lose);
     $("shut").onclick = () => { $("text").hidden = true; };

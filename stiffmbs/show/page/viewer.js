@@ -73,6 +73,19 @@ const MOVING = (() => {
     return Number.isFinite(found.x + found.y + found.z);
   }
 
+  /* The load with the largest force of a run, and its instant. */
+  function largest({ runs: [run], drawing }, off) {
+    const found = { load: "", t: run.start, size: 0 };
+    for (const { name } of drawing.loads) {
+      if (off.has(name) || !run.forces[name]) continue;
+      for (let k = 0; k < run.count; k++) {
+        const size = Math.hypot(...run.forces[name].map((values) => values[k]));
+        if (size > found.size) Object.assign(found, { load: name, size, t: run.start + (k / (run.count - 1 || 1)) * (run.end - run.start) });
+      }
+    }
+    return found;
+  }
+
   /* The mechanism of one run as objects of three.js. */
   function mechanism(drawing, run, ghost) {
     const flat = drawing.dimensions === 2, groups = {}, root = new THREE.Group(), links = [], bent = [];
@@ -274,6 +287,12 @@ const MOVING = (() => {
     (w, h) => [far + 3, -h / 2], (w, h) => [-far - 3 - w, -h / 2], (w, h) => [-w / 2, -far - h], (w) => [-w / 2, far],
   ]);
 
+  /* Directions from the mechanism to the camera, by the axis that points upwards; a vehicle drives along x. */
+  const VIEWS = {
+    z: { oblique: [1, -1, 0.8165], front: [1, 0, 0], side: [0, -1, 0], top: [0, -1e-3, 1] },
+    y: { oblique: [1, 0.8165, 1], front: [1, 0, 0], side: [0, 0, 1], top: [0, 1, 1e-3] },
+  };
+
   /* The mechanism on a canvas; `load` shows other data and keeps the camera. */
   function view(place, time) {
     const canvas = make("canvas", place, {}, { tabindex: 0, role: "img" });
@@ -302,7 +321,7 @@ const MOVING = (() => {
     const legend = make("div", place, { className: "legend" });
     const tip = make("span", place, { className: "name tip" }, { "aria-hidden": "true" });
     const middle = new THREE.Vector3(), half = new THREE.Vector3(), force = new THREE.Vector3();
-    const state = { forces: false, names: false, follow: "", off: new Set(), traces: [] };
+    const state = { forces: false, names: false, follow: "", from: "oblique", off: new Set(), traces: [] };
     let data = null, machines = [], loads = [], names = [], reach = 1, upright = "z", scale = null;
     let wide = 0, high = 0, before = null, pointed = null;
 
@@ -319,10 +338,10 @@ const MOVING = (() => {
     function home() {
       const { drawing } = data;
       controls.target.copy(middle);
-      const way = drawing.dimensions === 2 ? [0, 0, 1] : upright === "z" ? [1, -1, 0.8165] : [1, 0.8165, 1];
+      const way = drawing.dimensions === 2 ? [0, 0, 1] : VIEWS[upright][state.from];
       camera.position.copy(middle).add(new THREE.Vector3(...way).normalize().multiplyScalar(10 * drawing.size));
       camera.zoom = 1;
-      before = null;
+      before = state.follow && data.runs[0].bodies[state.follow] ? machines[0].anchored({ body: state.follow, point: [0, 0, 0] }, time.start) : null;
       controls.update();
       camera.updateMatrixWorld();
     }
@@ -379,7 +398,7 @@ const MOVING = (() => {
       const { drawing } = data;
       canvas.setAttribute("aria-label", `${drawing.name || "mechanism"} in motion; drag to ${drawing.dimensions === 2 ? "move" : "turn"} it, space plays and pauses`);
       machines = data.runs.map((run, k) => {
-        const machine = mechanism(drawing, run, k ? COLORS[k % COLORS.length] : undefined);
+        const machine = mechanism(run.drawing ?? drawing, run, k ? COLORS[k % COLORS.length] : undefined);
         scene.add(machine.root);
         return machine;
       });
@@ -528,8 +547,8 @@ const MOVING = (() => {
     canvas.addEventListener("pointerleave", () => { pointed = null; it.stale = true; });
     controls.addEventListener("change", () => { it.stale = true; });
     const it = {
-      draw, state, canvas, stale: true, load, addTrace: (anchor) => addTrace(anchor), clearTraces,
-      home: () => { frame(); it.stale = true; }, explain: () => { explain(); it.stale = true; },
+      draw, state, canvas, stale: true, load, data: () => data, addTrace: (anchor) => addTrace(anchor), clearTraces,
+      home: () => { frame(); it.stale = true; }, look: (from) => { state.from = from; it.home(); }, explain: () => { explain(); it.stale = true; },
     };
     new ResizeObserver(() => { it.stale = true; }).observe(place);
     return it;
@@ -557,7 +576,7 @@ const MOVING = (() => {
 
   /* `fetch(names)` gets the values of channels that a page does not hold. */
   function plots(place, time, fetch) {
-    let channels, T, by, bands = [];
+    let channels, T, by, bands = [], pinned = null;
     const bar = make("div", place, { className: "controls" });
     const list = make("datalist", place, { id: "channel-names" });
     const label = make("label", bar, { textContent: "Channel " });
@@ -581,6 +600,7 @@ const MOVING = (() => {
       if (!chosen.length && by.get("energy.total")?.values) chosen.push(by.get("energy.total"));
       listed();
     }
+    const pinnedValues = (c) => pinned?.columns.find((one) => one.name === c.name && one.unit === c.unit)?.values;
     const chosen = [];
     let from = time.start, to = time.end, drag = null;
     const units = () => [...new Set(chosen.map((c) => c.unit))];
@@ -633,6 +653,7 @@ const MOVING = (() => {
         const own = chosen.filter((o) => o.unit === unit);
         let low = Infinity, high = -Infinity;
         for (const o of own) for (let k = 0; k < T.length; k++) if (T[k] >= from && T[k] <= to && o.values[k] === o.values[k]) { low = Math.min(low, o.values[k]); high = Math.max(high, o.values[k]); }
+        for (const earlier of own.map(pinnedValues)) if (earlier) for (const v of earlier) if (v === v) { low = Math.min(low, v); high = Math.max(high, v); }
         for (const band of bands.filter((one) => own.some((o) => o.name === one.channel))) { low = Math.min(low, ...band.low); high = Math.max(high, ...band.high); }
         if (!(low <= high)) return;
         const pad = high - low > LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)) ? 0.06 * (high - low) : Math.abs(high) * 0.1 || 1;
@@ -657,17 +678,21 @@ const MOVING = (() => {
           c.strokeStyle = `${paint}55`; c.lineWidth = 0.8;
           for (const values of band.curves) { c.beginPath(); band.time.forEach((_, k) => path(values, k, !k)); c.stroke(); }
         }
-        for (const o of own) {
-          const n = chosen.indexOf(o);
-          c.strokeStyle = COLORS[n % COLORS.length]; c.setLineDash(DASHES[n % DASHES.length]); c.lineWidth = 1.6; c.beginPath();
+        const curve = (instants, values, n, width) => {
+          c.strokeStyle = COLORS[n % COLORS.length]; c.setLineDash(DASHES[n % DASHES.length]); c.lineWidth = width; c.beginPath();
           let open = false;
-          for (let k = 0; k < T.length; k++) {
-            if (o.values[k] !== o.values[k]) { open = false; continue; }
-            const x = xOf(T[k], w), y = yOf(o.values[k]);
+          for (let k = 0; k < instants.length; k++) {
+            if (values[k] !== values[k]) { open = false; continue; }
+            const x = xOf(instants[k], w), y = yOf(values[k]);
             open ? c.lineTo(x, y) : c.moveTo(x, y);
             open = true;
           }
           c.stroke();
+        };
+        for (const o of own) {
+          const n = chosen.indexOf(o), earlier = pinnedValues(o);
+          if (earlier) { c.globalAlpha = 0.55; curve(pinned.time, earlier, n, 0.9); c.globalAlpha = 1; }
+          curve(T, o.values, n, 1.6);
         }
         c.restore(); c.setLineDash([]);
       });
@@ -696,7 +721,7 @@ const MOVING = (() => {
     add.onclick = () => choose(field.value.trim());
     field.onkeydown = (e) => { if (e.key === "Enter") choose(field.value.trim()); };
     field.onchange = () => { if (by.has(field.value)) choose(field.value); };
-    const it = { draw, stale: true, choose, chosen, load, field, band: (found) => { bands = found; it.stale = true; } };
+    const it = { draw, stale: true, choose, chosen, load, field, band: (found) => { bands = found; it.stale = true; }, pin: (found) => { pinned = found; it.stale = true; } };
     new ResizeObserver(() => { it.stale = true; }).observe(frame);
     return it;
   }
@@ -723,6 +748,8 @@ const MOVING = (() => {
     let names = [], load = () => {};
     if (shown) {
       const follow = pick("Follow", (body) => { shown.state.follow = body; shown.stale = true; });
+      const from = pick("View", (name) => shown.look(name));
+      from.offer(Object.keys(VIEWS.z).map((name) => [name, name]));
       const path = pick("Trace", (k, select) => {
         if (k === "clear") shown.clearTraces();
         else if (k !== "") shown.addTrace(names[k]);
@@ -742,12 +769,26 @@ const MOVING = (() => {
       const switches = make("div", each);
       const named = box("names", (on) => { shown.state.names = on; shown.stale = true; });
       make("button", bar, { type: "button", textContent: "Whole mechanism" }).onclick = () => shown.home();
+      const worst = make("button", bar, { type: "button", textContent: "Largest force" });
+      const said = make("span", bar, { className: "hint" }, { role: "status" });
+      /* Show the instant of the largest force among those that are drawn. */
+      worst.onclick = () => {
+        const { load, t } = largest(shown.data(), shown.state.off);
+        if (!load) return;
+        Object.assign(time, { playing: false });
+        forces.checked = true;
+        forces.onchange();
+        time.set(t);
+        said.textContent = `in ${load}`;
+      };
+      time.on(() => { said.textContent = ""; });
       load = (data, keep) => {
         names = data.drawing.names;
         follow.offer([["", "nothing"], ...data.drawing.bodies.map((b) => [b, b])]);
         path.offer([["", "choose"], ["clear", "none"], ...names.map((n, k) => [k, n.text])]);
         if (!keep) { follow.value = data.follow; path.value = ""; }
-        forces.parentElement.hidden = !(data.longest.force > 0);
+        forces.parentElement.hidden = worst.hidden = !(data.longest.force > 0);
+        from.parentElement.hidden = data.drawing.dimensions === 2;
         forces.checked = shown.state.forces;
         named.checked = shown.state.names;
         each.hidden = !(forces.checked && data.drawing.loads.length > 1);
@@ -801,7 +842,9 @@ const MOVING = (() => {
     const bar = controls(place, time, shown);
     const plotted = data.channels ? plots(place, time, fetch) : null;
     const drawn = [shown, plotted].filter(Boolean);
+    let pinned = null;
     const load = (keep) => {
+      if (pinned) data.runs = [data.runs[0], pinned.run];
       shown?.load(data, keep);
       bar.load(data, keep);
       plotted?.load(data.channels, keep);
@@ -826,9 +869,20 @@ const MOVING = (() => {
     const it = {
       time, data, shown, plotted, frames: 0, ended: false,
       end() { it.ended = true; },
+      /* Keep the run that is shown, behind those that follow, or no longer. */
+      pin(on) {
+        const [run] = data.runs;
+        pinned = on ? { run: { ...run, name: "pinned", drawing: data.drawing } } : null;
+        run.name = on ? "now" : "";
+        data.runs = [run];
+        plotted?.pin(on ? data.channels : null);
+        load(true);
+      },
       async replace(head, numbers) {
         const found = await read(head, numbers), kept = found.drawing.dimensions === data.drawing.dimensions;
         data = found;
+        if (!kept) { pinned = null; plotted?.pin(null); }
+        if (pinned) data.runs[0].name = "now";
         [time.start, time.end] = spanOf(data);
         load(kept);
         time.set(time.t);

@@ -167,6 +167,50 @@ def test_a_body_is_followed_and_a_path_is_traced(tab, opened):
     assert (np.abs(pixels(tab, ".viewer canvas") - followed).max(axis=2) > 60).any()
 
 
+def press(tab, words):
+    tab.run(f"[...document.querySelectorAll('button')].find((one) => one.textContent === {words!r}).click()")
+
+
+@pytest.mark.long
+def test_a_car_is_seen_from_the_side_the_front_and_above(tab, opened):
+    """Also at a later time, while the camera follows it: the extents on the screen are those of length, width and height."""
+    opened("animate", EXAMPLES / "car.yaml", "--duration", 0.5)
+    tab.run("shown.time.set(0.5)")
+    views = tab.run("[...document.querySelectorAll('select')].map((one) => [...one.options].map((each) => each.value))")
+    assert ["oblique", "front", "side", "top"] in views
+    shapes = {}
+    for view in ("side", "front", "top"):
+        tab.run(
+            f"(() => {{ const e = [...document.querySelectorAll('select')].find((one) => one.options[1]?.value === 'front'); e.value = '{view}'; e.onchange(); }})()"
+        )
+        blue = pixels(tab, ".viewer canvas").astype(int)
+        where = np.argwhere((blue[..., 2] - blue[..., 0] > 60) & (blue[..., 2] > 120))
+        assert len(where) > 500, view
+        shapes[view] = np.ptp(where, axis=0)[::-1]  # across, upwards
+        middle = where.mean(axis=0) / blue.shape[:2]
+        assert (np.abs(middle - 0.5) < 0.3).all(), view
+    across, upwards = ({view: shape[k] / shapes[view][0] for view, shape in shapes.items()} for k in (0, 1))
+    assert across["side"] == 1 and upwards["side"] < 0.7  # longer than high
+    assert 0.5 < upwards["front"] < 1.6  # about as high as wide
+    assert 0.25 < upwards["top"] < 0.7  # x to the right
+
+
+@pytest.mark.long
+def test_the_instant_of_the_largest_force_is_shown(tab, opened):
+    solution = stiffmbs.run(EXAMPLES / "half_car.yaml")
+    opened("animate", EXAMPLES / "half_car.yaml")
+    press(tab, "Largest force")
+    loads = tab.run("shown.data.drawing.loads.map((one) => one.name)")
+    sizes = {
+        name: np.hypot(solution[f"{name}.fx"], solution[f"{name}.fy"]) for name in loads if f"{name}.fx" in solution
+    }
+    largest = max(sizes, key=lambda name: sizes[name].max())
+    words = tab.run("[...document.querySelectorAll('.controls .hint')].map((one) => one.textContent)")
+    assert f"in {largest}" in words
+    assert tab.run("shown.time.t") == pytest.approx(solution.time[np.argmax(sizes[largest])], abs=0.03)
+    assert tab.run("shown.shown.state.forces")
+
+
 @pytest.mark.long
 def test_names_and_titles_are_no_markup(tab, opened, tmp_path):
     scene = tmp_path / "odd.yaml"
