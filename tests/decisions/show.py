@@ -68,9 +68,9 @@ def derived(elements=(), n_joints=1, own=None):
     """Return the unit of symbols, or half the thickness of a bar, of a mechanism of size 1."""
     model = Record(bodies=own or {}, joints=range(n_joints), forces=(), dimensions=3)
     with patch.multiple(
-        derive, described_poses=nothing, _Sites=lambda *_: Record(on_bodies=lambda: {"a": []}), _wheels=lambda _: {},
+        derive, described_poses=nothing, _Sites=lambda *_: Record(on_bodies=lambda: {"a": []}), _wheels=lambda _: {}, _first_nodes=lambda _: {},
         interface_bodies=lambda _: {}, modal_bodies=lambda _: (), given_shapes=lambda *_: [], _size=lambda *_: 1.0,
-        body_colors=lambda _: {}, _elements=lambda _: elements, _drawn=lambda *args: reach(args[-1]),
+        body_colors=lambda _: {}, _elements=lambda _: elements, _drawn=lambda *args: reach(args[-2]),
         derived_shape=lambda *args: reach(args[-1]),
     ):  # fmt: skip
         return reached(lambda: derive.drawing_of(model))
@@ -80,7 +80,7 @@ def distance_of_symbols():
     element = Record(parts=lambda _: [])
     model = Record(joints={}, dimensions=2, gravity=(0.0, -1.0))
     with patch.multiple(derive, _ends=lambda *_: (1, 2), Draft=lambda *args: reach(args[7])):
-        return reached(lambda: derive._drawn("e", element, model, None, 1.0, {}, 1.0))
+        return reached(lambda: derive._drawn("e", element, model, None, 1.0, {}, 1.0, ()))
 
 
 def opacity_of_other_runs():

@@ -40,6 +40,7 @@ class Node:
     mass: float = 0.0  # kg
     inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))  # in the node's axes, kg m^2
     radius: float = 0.0  # distance of the surface from the axis, m; 0 if it depends on the direction
+    section: Section | None = None  # None for a beam of given stiffnesses
 
     def lump(self, share: float, mass: float, inertia: np.ndarray, axes: np.ndarray) -> None:
         """Add the mass of a length of the beam whose inertia per length, shape (3, 3), is given along its axes."""
@@ -202,7 +203,8 @@ def discretise(beam: Any) -> Line:
     for k, node in enumerate(nodes):
         node.name = at.get(round(node.s / total, PLACES), f"{plain}{k}")
         if beam.section is not None:
-            node.radius = _between(beam.section, beam.section_end, node.s / total).radius(planar)
+            node.section = _between(beam.section, beam.section_end, node.s / total)
+            node.radius = node.section.radius(planar)
     nodes[0].name, nodes[-1].name = "start", "end"
     tolerance = AUTOMATIC * total if wanted.tolerance == 0 else wanted.tolerance
     divided = Divided(total, tuple(counts), tolerance, {node.name: node.s / total for node in nodes})

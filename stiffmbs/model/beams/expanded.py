@@ -13,6 +13,7 @@ from ...elements.spatial.orientation import IDENTITY, from_matrix
 from ...elements.turns import GROUND_AXES
 from ...reading.files.yaml_text import Content
 from .discretise import Element, Line, Node, discretise
+from .drawn_shapes import planar_shape, spatial_shapes
 
 if TYPE_CHECKING:
     from .beam import Beam
@@ -67,7 +68,7 @@ def _planar_body(node: Node, beam: PlanarBeam, start: Node, shape: list[np.ndarr
         "mass": node.mass, "inertia": float(node.inertia[2, 2]), "position": _numbers(node.point[:2]),
         "angle": _angle(node.axes), "markers": {GROUND_AXES: {"angle": -_angle(node.axes)}}, "omega": beam.omega,
         "velocity": [beam.velocity[0] - beam.omega * float(arm[1]), beam.velocity[1] + beam.omega * float(arm[0])],
-        "geometry": {"type": "polyline", "points": [_numbers(p[:2]) for p in shape]},
+        "geometry": [planar_shape(node, shape)],
     }  # fmt: skip
 
 
@@ -85,7 +86,7 @@ def _spatial_body(node: Node, beam: SpatialBeam, start: Node, shape: list[np.nda
         "position": _numbers(node.point), "orientation": list(from_matrix(node.axes)),
         "markers": {GROUND_AXES: {"orientation": list(from_matrix(node.axes.T))}},
         "velocity": _numbers(velocity), "omega": _numbers(node.axes.T @ omega),
-        "geometry": {"type": "polyline", "points": [_numbers(p) for p in shape]},
+        "geometry": spatial_shapes(node, shape),
     }  # fmt: skip
 
 

@@ -22,6 +22,8 @@ from ...reading.fields import Described, Measured
 from ...reading.units import si
 from .open_section import of_rectangles, of_walls
 
+Bounds = tuple[float, float, float, float]
+"""Bounds of a rectangle along axis 2, then along axis 3, m."""
 PRINCIPAL = 1e-6
 """Largest product of inertia of principal axes, relative to the larger second moment."""
 CENTRED = 0.01
@@ -86,6 +88,10 @@ class Section(Described):
         """Return the constants for a Poisson ratio."""
         raise NotImplementedError
 
+    def rectangles(self) -> list[Bounds]:
+        """Return rectangles that fill the section, in any axes parallel to axes 2 and 3; none for round or unknown sections."""
+        return []
+
     def radius(self, planar: bool) -> float:
         """Return the distance of the surface from the axis, m; 0 if it depends on the direction or is unknown."""
         if "diameter" in type(self).model_fields:
@@ -145,6 +151,10 @@ class Rectangle(Section):
         J = long * short**3 / 3 * (1 - 192 / math.pi**5 * short / long * series)
         return Properties(b * h, b * h**3 / 12, h * b**3 / 12, J, 5 / 6, 5 / 6)
 
+    def rectangles(self) -> list[Bounds]:
+        """See `Section`."""
+        return [(0, self.width, 0, self.height)]
+
 
 class Flanged(Section):
     """Profile of a web and two equal flanges; the web stands along the height."""
@@ -180,6 +190,11 @@ class IProfile(Flanged):
         J = (2 * b * t**3 + (h - t) * w**3) / 3
         return Properties(A, I2, I3, J, 5 / 6 * 2 * b * t / A, h * w / A)
 
+    def rectangles(self) -> list[Bounds]:
+        """See `Section`."""
+        b, h, t, w = self.width, self.height, self.flange, self.web
+        return [(0, b, 0, t), ((b - w) / 2, (b + w) / 2, t, h - t), (0, b, h - t, h)]
+
 
 class Angle(Section):
     """L profile; its legs extend from the corner along axes 2 and 3."""
@@ -201,7 +216,12 @@ class Angle(Section):
         """Exact moments of area, and the shear flow and torsion of thin walls."""
         b, h, t = self.width, self.height, self.thickness
         walls = ((b, t / 2), (t / 2, t / 2), (t / 2, h))
-        return _thin([(0, b, 0, t), (0, t, t, h)], walls, (t, t))
+        return _thin(self.rectangles(), walls, (t, t))
+
+    def rectangles(self) -> list[Bounds]:
+        """See `Section`."""
+        b, h, t = self.width, self.height, self.thickness
+        return [(0, b, 0, t), (0, t, t, h)]
 
 
 class Channel(Flanged):
@@ -213,12 +233,15 @@ class Channel(Flanged):
         """Exact moments of area, and the shear flow and torsion of thin walls."""
         b, h, t, w = self.width, self.height, self.flange, self.web
         walls = ((b, t / 2), (w / 2, t / 2), (w / 2, h - t / 2), (b, h - t / 2))
-        return _thin([(0, b, 0, t), (0, w, t, h - t), (0, b, h - t, h)], walls, (t, w, t))
+        return _thin(self.rectangles(), walls, (t, w, t))
+
+    def rectangles(self) -> list[Bounds]:
+        """See `Section`."""
+        b, h, t, w = self.width, self.height, self.flange, self.web
+        return [(0, b, 0, t), (0, w, t, h - t), (0, b, h - t, h)]
 
 
-def _thin(
-    rectangles: list[tuple[float, float, float, float]], walls: tuple[tuple[float, float], ...], t: tuple[float, ...]
-) -> Properties:
+def _thin(rectangles: list[Bounds], walls: tuple[tuple[float, float], ...], t: tuple[float, ...]) -> Properties:
     A, centroid, moments, third = of_rectangles(rectangles)
     centre, compliance = of_walls(walls, t)
     J = sum(math.dist(a, b) * each**3 for (a, b), each in zip(pairwise(walls), t, strict=True)) / 3

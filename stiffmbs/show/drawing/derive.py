@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from importlib import import_module
 from typing import Any
 
@@ -26,6 +26,8 @@ from .symbols.spatial import radius_of
 
 UNIT, CROWDED = 0.024, 10
 """Unit of symbols relative to the mechanism's size, and number of elements above which symbols become smaller."""
+BEAM = "beam"
+"""Symbol of the elements of beams."""
 THICK = 5 / 6
 """Half the thickness of bars, in units of symbols."""
 FRONT = 2.0
@@ -52,10 +54,13 @@ def drawing_of(
         if isinstance(body, FloatingFrame) and (surface := deformed_body(name, body)) is not None:
             shaped[name] = [surface]
     size = _size(data, sites, shaped)
-    colors = body_colors(name for name in data.bodies if name not in of_interfaces and name not in modal)
-    colors |= {name: colors[frame] for name, frame in of_interfaces.items()}
+    of_beams = _first_nodes(data)
+    own = (name for name in data.bodies if name not in of_interfaces and name not in modal)
+    colors = body_colors(name for name in own if of_beams.get(name, name) == name)
+    colors |= {name: colors[first] for name, first in (of_interfaces | of_beams).items()}
     unit = scale * UNIT * size * math.sqrt(min(1.0, CROWDED / max(1, len(data.joints) + len(data.forces))))
-    drafts = [_drawn(name, element, data, sites, size, colors, unit) for name, element in _elements(data)]
+    bare = {name for name, found in shaped.items() if not any(part.solids for part in found)}
+    drafts = [_drawn(name, element, data, sites, size, colors, unit, bare) for name, element in _elements(data)]
     parts = [part for draft in drafts for part in draft.parts]
     having = {part.body for part in parts if part.role == "body"}
     points = sites.on_bodies()
@@ -87,6 +92,17 @@ def drawing_of(
 def _wheels(data: ModelData) -> dict[str, float]:
     """Return the radius of the wheel that a tyre draws, by body, m."""
     return {tyre.i.body: radius_of(tyre) for tyre in data.forces.values() if tyre.symbol == "tyre"}  # type: ignore[attr-defined]
+
+
+def _first_nodes(data: ModelData) -> dict[str, str]:
+    """Return the first node of the beam of each node of a beam."""
+    found: dict[str, str] = {}
+    for element in data.forces.values():
+        if element.symbol == BEAM:
+            nodes = [marker.body for _, marker in element.markers()]
+            first = next((found[node] for node in nodes if node in found), min(nodes, key=list(data.bodies).index))
+            found |= dict.fromkeys(nodes, first)
+    return found
 
 
 def _elements(data: ModelData) -> Iterator[tuple[str, Element]]:
@@ -165,9 +181,10 @@ def _own_size(data: ModelData) -> float:
 
 
 def _drawn(
-    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str], unit: float
-) -> Draft:
-    """Return the symbol of one element."""
+    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str], unit: float,
+    bare: Collection[str],
+) -> Draft:  # fmt: skip
+    """Return the symbol of one element. `bare`: bodies without solids; an element between other nodes of a beam needs no symbol."""
     joints: Joints = {
         other: (joint, *_ends(joint, data, sites)) for _, ref in element.parts(JointName) if (other := ref.joint)
         for joint in [data.joints[other]]
@@ -186,7 +203,8 @@ def _drawn(
     draft = Draft(name, element, unit, size, i, j, joints, front, below, dict(colors))
     symbols = import_module(f".symbols.{'planar' if data.dimensions == 2 else 'spatial'}", __package__).SYMBOLS
     usual = symbols["joint" if isinstance(element, Joint) else "any_force"]
-    symbols.get(element.symbol or element.kind, usual)(draft)
+    if element.symbol != BEAM or any(marker.body in bare for _, marker in element.markers()):
+        symbols.get(element.symbol or element.kind, usual)(draft)
     return draft
 
 
