@@ -199,7 +199,7 @@ def fmu(
     """Write SCENE as an FMU (co-simulation) with its inputs, parameters and channels.
 
     The FMU needs this package in the Python of the program that runs it (needs the extra fmu). With --native it needs no
-    Python: its parameters are fixed when it is written, and it is for model exchange too (needs a C compiler or the
+    Python: only parameters of forces can be changed, and it is for model exchange too (needs a C compiler or the
     extra fmu).
 
     Exit status: 0 done, 1 the FMU could not be written, 2 the input is wrong.

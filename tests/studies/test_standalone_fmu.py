@@ -261,6 +261,70 @@ print(json.dumps([at, back, ends, faults, values(one, *names)]))
 """
 
 
+TUNED = """
+name: Tuned
+parameters: {k: 40 N/m, c: 2*k*0.01 s, m: 2 kg, F: 3 N, both: 2, start: 0.1, w: 4, p: 1, r: 2}
+inputs: {push: 0 N}
+bodies: {sled: {mass: m, inertia: 0.1, position: [start, 0], velocity: [1, 0]}}
+joints: {rail: {type: prismatic, i: sled, j: ground}}
+forces:
+  spring: {type: spring_damper, i: sled, j: {body: ground, point: [-3, 0]}, stiffness: k, damping: 0.3, free_length: 3}
+  pull: {type: force, i: sled, force: ["F*(1 - sled.x/1 m)", 0]}
+  swing: {type: force, i: sled, force: ["0.5*sin(w*t)", 0]}
+  pusher: {type: force, i: sled, force: ["both*push", 0]}
+  product: {type: force, i: sled, force: ["p*r*0.1 N", 0]}
+run: {duration: 2 s, output: 20 ms, rtol: 1e-9}
+"""
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_parameters_of_forces_are_tunable(tmp_path, version):
+    """Others are fixed: those of bodies and of the start, in functions of time, and of a product all but the first."""
+    path = tmp_path / "tuned.yaml"
+    path.write_text(TUNED)
+    stiffmbs.build_fmu(path, tmp_path / "tuned.fmu", ["sled.x", "energy.total"], native=True, version=version)
+    script = """
+from fmpy import simulate_fmu
+tuned = {v.name: (v.variability, v.initial, float(v.start)) for v in about.modelVariables if v.causality == 'parameter'}
+found = [
+    simulate_fmu(path, start_values=given, fmi_type=kind, output=['sled.x', 'energy.total'], stop_time=2.0, output_interval=0.02, relative_tolerance=1e-9)
+    for kind in ('CoSimulation', 'ModelExchange') for given in ({}, {'k': 90.0, 'F': -7.0, 'both': 3.0, 'push': 2.0, 'p': 40.0})
+]
+print(json.dumps([tuned, [[list(map(float, r[n])) for n in ('sled.x', 'energy.total')] for r in found]]))
+"""
+    (tuned, found), _ = told_by(script, tmp_path / "tuned.fmu")
+    assert tuned == {name: ["tunable", "exact", value] for name, value in {"k": 40, "F": 3, "both": 2, "p": 1}.items()}
+    changed = [("k", "90"), ("F", "-7"), ("both", "3"), ("inputs.push", "2"), ("p", "40")]
+    runs = [stiffmbs.run(stiffmbs.load_scene(path, changes=given), rtol=1e-10) for given in ([], changed)] * 2
+    for (x, energy), run in zip(found, runs, strict=True):
+        assert np.abs(np.array(x) - run["sled.x"]).max() < 1e-6
+        assert np.abs(np.array(energy) - run["energy.total"]).max() < 1e-5
+
+
+def test_a_parameter_acts_from_the_time_it_is_set(tmp_path):
+    path = tmp_path / "tuned.yaml"
+    path.write_text(TUNED.replace("0.3,", "0,").replace("F: 3 N", "F: 0 N").replace("0.5*sin", "0*sin").replace("p: 1", "p: 0"))
+    stiffmbs.build_fmu(path, tmp_path / "tuned.fmu", ["sled.x"], native=True)
+    script = """
+made = instance(tolerance=1e-9)
+made.doStep(0.0, 0.5)
+made.setReal([refs['k']], [160.0])
+made.doStep(0.5, 0.5)
+print(json.dumps(values(made, 'sled.x', 'k')))
+"""
+    (x, k), _ = told_by(script, tmp_path / "tuned.fmu")
+    first, then = np.sqrt(40 / 2), np.sqrt(160 / 2)
+    place = 0.1 * np.cos(first * 0.5) + np.sin(first * 0.5) / first
+    velocity = -0.1 * first * np.sin(first * 0.5) + np.cos(first * 0.5)
+    assert (x, k) == (pytest.approx(place * np.cos(then * 0.5) + velocity / then * np.sin(then * 0.5), abs=1e-7), 160.0)
+
+
+def test_parameters_of_a_computed_start_are_fixed(tmp_path):
+    path = tmp_path / "tuned.yaml"
+    path.write_text(TUNED + "start: settled\n")
+    assert exported_model(stiffmbs.load_scene(path)).parameters == ()
+
+
 def test_steps_from_a_restored_state_are_equal_to_the_last_bit(built):
     (at, back, ends, faults, reset), _ = told_by(STATES, built())
     assert back == [at, [2.0]]

@@ -15,7 +15,7 @@ VERSIONS = "2.0", "3.0"
 
 
 class Variable(NamedTuple):
-    """Continuous variable of an FMU.
+    """Continuous variable or tunable parameter of an FMU.
 
     `reference`: its value reference. `initial`: how its start follows; empty for inputs. `start`: value at the start, if it may be set.
     `state`: value reference of the state that it is the derivative of.
@@ -30,7 +30,7 @@ class Variable(NamedTuple):
 
 
 class Variables(NamedTuple):
-    """Variables of an FMU: continuous states and their derivatives, other outputs, inputs."""
+    """Variables of an FMU: continuous states and their derivatives, other outputs, inputs and parameters."""
 
     states: list[Variable]
     derivatives: list[Variable]
@@ -72,7 +72,9 @@ def variables_of(model: ExportedModel, outputs: Mapping[str, int]) -> Variables:
             if name not in known
         ],
         [
-            Variable(name, model.first_input + k, "input", start=value)
+            Variable(name, model.first_input + k, "parameter", "exact", value)
+            if name in model.parameters
+            else Variable(name, model.first_input + k, "input", start=value)
             for k, (name, value) in enumerate(model.inputs.items())
         ],
     )
@@ -119,7 +121,8 @@ def description(
 def _of(variable: Variable) -> dict[str, str]:
     """Return the attributes that both versions have."""
     found = {"name": variable.name, "valueReference": str(variable.reference), "causality": variable.causality}
-    return found | {"variability": "continuous"} | ({"initial": variable.initial} if variable.initial else {})
+    variability = "tunable" if variable.causality == "parameter" else "continuous"
+    return found | {"variability": variability} | ({"initial": variable.initial} if variable.initial else {})
 
 
 def _by_numbers(root: Element, model: ExportedModel, variables: Variables) -> None:

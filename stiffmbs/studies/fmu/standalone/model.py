@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ....dynamics.dynamics import OUTPUT_POINTS, Dynamics, OutputRows
 from ....dynamics.held_inputs import AffineNumber
 from ....dynamics.native.layouts import JUDGED
 from ....errors import InputError
+from ....model.files.written_scene import WrittenScene
 from ....model.scene import Scene
 from ....notes import Note, NoteKind, Severity
 from ....reading.did_you_mean import did_you_mean
@@ -56,7 +57,7 @@ class ExportedModel:
     - `image`: copy of all tables.
     - `states`: name of each continuous state, empty without a channel, by its place in (q, u). All others are algebraic.
     - `places`: places in the row of outputs, by channel. `others`: channels that Python computes.
-    - `inputs`: values at the start by name. `numbers`: numbers of forces that depend on them.
+    - `inputs`: values of inputs at the start by name, then those of `parameters`. `numbers`: numbers of forces that depend on them.
     - `breakpoints`: times at which the integration restarts, s, and their distance `aside`.
     - `notes`: sentences for the user.
     """
@@ -68,6 +69,7 @@ class ExportedModel:
     places: Mapping[str, int]
     others: tuple[str, ...]
     inputs: Mapping[str, float]
+    parameters: tuple[str, ...]
     numbers: tuple[AffineNumber, ...]
     breakpoints: np.ndarray
     aside: float
@@ -133,12 +135,14 @@ def exported_model(scene: Scene, outputs: Sequence[str] = ()) -> ExportedModel:
     """
     given = {name: float(value) for name, value in scene.inputs.items() if isinstance(value, float | int)}
     written, of_requests = with_requests(scene, written_scene(scene), outputs or scene.outputs())
-    solver = CaseSolver(Task(written, tuple(f"{OWN_INPUTS}.{name}" for name in given), {}, ()))
+    solver = _solver(written, given)
     scene = solver.scene([*given.values()])
     job = prepare(scene, changed(scene.run, {"presolve": False}))
     dynamics, grid = job.dynamics, job.grid
     _refuse(job)
     numbers = _numbers(job, solver, given)
+    parameters, of_parameters = _parameters(job, written, given, numbers)
+    numbers += of_parameters
     notes = _notes(job)
     state = dynamics.state
     state.q[:], state.u[:], state.lam[:] = job.start.q, job.start.u, job.start.lam
@@ -153,7 +157,18 @@ def exported_model(scene: Scene, outputs: Sequence[str] = ()) -> ExportedModel:
     places = {own.get(name, name): place for name, place in places.items() if name not in given}
     requests = tuple(name for name in scene.outputs() if name not in places)
     return ExportedModel(
-        job, work, image, states, places, (*others, *requests), given, numbers, features.breakpoints, grid.aside, notes
+        job,
+        work,
+        image,
+        states,
+        places,
+        (*others, *requests),
+        given | parameters,
+        tuple(parameters),
+        numbers,
+        features.breakpoints,
+        grid.aside,
+        notes,
     )
 
 
@@ -209,6 +224,44 @@ def _numbers(job: Job, solver: CaseSolver, inputs: Mapping[str, float]) -> tuple
             refused("its inputs change the times at which formulas of time have jumps or bends; rewrite their formulas")
         )
     return found.held.numbers
+
+
+def _solver(written: WrittenScene, inputs: Mapping[str, float], *parameters: str) -> CaseSolver:
+    """Return the solver of a scene with its inputs, and some parameters, as varied values."""
+    return CaseSolver(Task(written, (*(f"{OWN_INPUTS}.{name}" for name in inputs), *parameters), {}, ()))
+
+
+def _parameters(
+    job: Job, written: WrittenScene, inputs: Mapping[str, float], of_inputs: tuple[AffineNumber, ...]
+) -> tuple[dict[str, float], tuple[AffineNumber, ...]]:
+    """Return the parameters that may be changed, and the numbers of forces that are affine functions of one of them.
+
+    All others are fixed: those that change bodies, joints, the start, or times of jumps, and those of which a number is no
+    affine function, or depends on an input or on another parameter as well. `of_inputs`: numbers that depend on inputs.
+    """
+    scene, found = job.data, dict[str, float]()
+    if not isinstance(scene, Scene) or scene.start != "described":
+        return {}, ()
+    numbers: list[AffineNumber] = []
+    taken = {(id(each.numbers), each.place) for each in of_inputs}
+    for name, value in scene.parameters.items():
+        solver = _solver(written, {}, name)
+        if name in inputs or not isinstance(value, float | int) or not solver.is_affine(0):
+            continue
+        of_parameter = replace(job, data=solver.scene([float(value)]))  # the forces that a change reads again differ
+        try:
+            own = InputNumbers(of_parameter, solver, {name: float(value)})
+        except InputError:  # it changes more than numbers
+            continue
+        places = {(id(each.numbers), each.place) for each in own.held.numbers}
+        if not own.affine or not places or places & taken:
+            continue
+        if own.of_time and _move_features(of_parameter, own, {name: float(value)}):
+            continue
+        taken |= places
+        numbers += [each._replace(input=len(inputs) + len(found)) for each in own.held.numbers]
+        found[name] = float(value)
+    return found, tuple(numbers)
 
 
 def _move_features(job: Job, numbers: InputNumbers, inputs: Mapping[str, float]) -> bool:
