@@ -74,8 +74,6 @@ def trial(seed: int) -> Verdict:
         Given(float(rng.uniform(-1, 1)), tuple(rng.uniform(-2, 2, SEGMENTS))) for _ in range(rng.choice([1, 1, 2, 4]))
     ]
     native = has_compiler() and bool(np.random.default_rng([seed, 1]).random() < NATIVE)
-    if native:  # its parameters are fixed
-        given = [replace(each, gain=given[0].gain) for each in given]
     detail = f"{('exchange' if seed % 2 else 'native') if native else 'Python'}, {content.get('dimensions', 2)}D, {len(given)} instances, {json.dumps(content)[:600]}"
     with tempfile.TemporaryDirectory() as made:
         scene, fmu = Path(made) / "scene.yaml", Path(made) / "scene.fmu"
@@ -84,7 +82,9 @@ def trial(seed: int) -> Verdict:
         try:
             channels = _channels(scene)
             if native:
-                channels = _built_without_python(scene, fmu, channels, given[0].gain)
+                channels, tunable = _built_without_python(scene, fmu, channels, given[0].gain)
+                if not tunable:
+                    given = [replace(each, gain=given[0].gain) for each in given]
             else:
                 build_fmu(scene, fmu, channels)
             known = [_by_runs(scene, each, channels) for each in given]
@@ -149,15 +149,18 @@ def _scene(rng: np.random.Generator) -> dict[str, Any]:
     return content
 
 
-def _built_without_python(scene: Path, fmu: Path, channels: tuple[str, ...], gain: float) -> tuple[str, ...]:
-    """Build an FMU without Python, and return those of some channels that it has."""
-    changes = [(f"parameters.{GAIN}", repr(gain))]
-    places = exported_model(load_scene(scene, changes)).places
-    found = tuple(name for name in channels if name in places)
+def _built_without_python(
+    scene: Path, fmu: Path, channels: tuple[str, ...], gain: float
+) -> tuple[tuple[str, ...], bool]:
+    """Build an FMU without Python; return those of some channels that it has, and whether its parameter is tunable."""
+    model = exported_model(load_scene(scene))
+    tunable = GAIN in model.parameters
+    changes = [] if tunable else [(f"parameters.{GAIN}", repr(gain))]
+    found = tuple(name for name in channels if name in model.places)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of stiff scenes
         build_fmu(scene, fmu, found, changes, native=True)
-    return found
+    return found, tunable
 
 
 def _channels(scene: Path) -> tuple[str, ...]:
@@ -236,17 +239,18 @@ def by_exchange(
 ) -> tuple[list[np.ndarray | None], str]:
     """Return the same as `by_fmpy` from model exchange with the integrator CVode of FMPy."""
     with needs("fmpy", "test"):
-        from fmpy import simulate_fmu
+        from fmpy import read_model_description, simulate_fmu
         from fmpy.validation import validate_fmu
     if faults := validate_fmu(str(fmu)):
         return [], f"the validation finds {faults}"
+    names = {variable.name for variable in read_model_description(str(fmu)).modelVariables}
     rows: list[np.ndarray | None] = []
     ends = np.linspace(0, STEPS, SEGMENTS + 1).astype(int) * duration / STEPS
     for each in given:
         points = [(time, value) for value, *both in zip(each.inputs, ends[:-1], ends[1:], strict=True) for time in both]
         try:
             found = simulate_fmu(
-                str(fmu), fmi_type="ModelExchange", solver="CVode", relative_tolerance=EXCHANGE_RTOL, stop_time=duration,
+                str(fmu), fmi_type="ModelExchange", start_values={GAIN: each.gain} if GAIN in names else {}, solver="CVode", relative_tolerance=EXCHANGE_RTOL, stop_time=duration,
                 output_interval=duration / STEPS, output=list(channels), input=np.array(points, dtype=[("time", float), (GIVEN, float)]),
             )  # fmt: skip
         except Exception:  # FMPy's own, for a status other than OK
