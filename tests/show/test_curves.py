@@ -9,7 +9,7 @@ import stiffmbs
 from stiffmbs.errors import InputError
 from stiffmbs.model.scene import Figure
 from stiffmbs.show.curves import Curve, _thinned, curve_chart, polar_chart, round_step, spark_line
-from stiffmbs.show.figure_charts import figure_charts, is_charted
+from stiffmbs.show.report import figure_charts, is_charted
 
 from ..conftest import EXAMPLES
 
