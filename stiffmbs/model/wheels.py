@@ -63,9 +63,9 @@ class Wheel:
         return np.asarray(self.centre - self.radius * up / np.linalg.norm(up))
 
     def on_axle_of(self, other: Wheel) -> bool:
-        """Return True if both wheels are on one axle across x."""
-        x, y = (self.centre - other.centre)[:2]
-        return bool(abs(x) <= ALONG * abs(y))
+        """Return True if both wheels are on one axle across x, or are one."""
+        x, y = np.abs(self.centre - other.centre)[:2]
+        return bool(x <= max(ALONG * y, ON_MIDDLE_PLANE))
 
     def to_the_left_of(self, other: Wheel) -> float:
         """Return the distance along the axle of the other wheel, of any heading, m; 0 if they are not on one axle."""
@@ -124,21 +124,22 @@ def marked_wheel(model: ModelData, carrier: str, prefix: str = "") -> Wheel:
     for name in ("spindle", "patch"):
         if f"{prefix}{name}" not in model.bodies[carrier].markers:
             raise InputError(f"bodies.{carrier}: found no marker '{prefix}{name}', expected it where the wheel is held")
-    spindle, patch = (
-        model.initial_marker(Marker(body=carrier, marker=f"{prefix}{name}")) for name in ("spindle", "patch")
-    )
-    centre, contact = np.array(spindle.point), np.array(patch.point)
-    return Wheel(centre, spindle.axes[:, 1], side_of(centre), carriers=(carrier,), patch=contact)
+    return _at_markers(model, carrier, prefix)
+
+
+def _at_markers(model: ModelData, carrier: str, prefix: str) -> Wheel:
+    """Return the wheel with a marker ``patch``, which is in the place of ``spindle`` too where that is missing."""
+    patch = model.initial_marker(Marker(body=carrier, marker=f"{prefix}patch"))
+    has_spindle = f"{prefix}spindle" in model.bodies[carrier].markers
+    spindle = model.initial_marker(Marker(body=carrier, marker=f"{prefix}spindle")) if has_spindle else patch
+    centre = np.array(spindle.point)
+    return Wheel(centre, spindle.axes[:, 1], side_of(centre), carriers=(carrier,), patch=np.array(patch.point))
 
 
 def marked_or_tyred(model: ModelData) -> tuple[Wheel, ...]:
     """Return all wheels of a model in space: those at markers of their carriers, and others with tyres."""
     places = [(body, marker) for body, one in model.bodies.items() for marker in one.markers]
-    marked = [
-        marked_wheel(model, body, marker.removesuffix("patch"))
-        for body, marker in places
-        if marker.endswith("patch") and (body, f"{marker.removesuffix('patch')}spindle") in places
-    ]
+    marked = [_at_markers(model, body, name[: -len("patch")]) for body, name in places if name.endswith("patch")]
     known = {wheel.carrier for wheel in marked}
     return (*marked, *(wheel for wheel in wheels_of(model) if wheel.carrier not in known))
 

@@ -10,6 +10,7 @@ import stiffmbs
 from stiffmbs.model.wheels import angular_of_joints, axle_at, corners, marked_or_tyred, wheel_of, wheels_of
 from stiffmbs.studies.handling.car import car_of
 from stiffmbs.studies.suspension.axle import axle_of
+from stiffmbs.studies.suspension.vehicle import VehicleOptions, vehicle_of
 
 TYRE = {"type": "fiala_tyre", "radius": 0.3, "stiffness": 2e5, "slip_stiffness": 6e4, "cornering_stiffness": 5e4,
         "mu_static": 1, "mu_sliding": 0.8}  # fmt: skip
@@ -95,3 +96,15 @@ def test_wheels_at_markers_are_counted_once(examples):
         other = next(one for one in wheels_of(scene) if one.carrier == wheel.carrier)
         assert math.dist(wheel.centre, other.centre) < 1e-9
         assert wheel.side == other.side
+
+
+@pytest.mark.parametrize(("place", "front"), [(-2.7, True), (2.7, False)])
+def test_a_marker_on_the_road_alone_is_a_wheel_of_another_axle(place, front):
+    """The other axle may be a marker; without it, the position of the axle is an assumption."""
+    chassis = {"mass": 900, "inertia": [1, 1, 1], "position": [0, 0, 0.5]}
+    suspension = {"use": "macpherson", "on": "chassis", "position": [0, 0, -0.5]}
+    content = {"dimensions": 3, "bodies": {"chassis": {**chassis, "markers": {"patch": {"point": [place, 0, -0.5]}}}}, "parts": {"front.left": suspension}}  # fmt: skip
+    scene = stiffmbs.read_scene(json.dumps(content))
+    found = vehicle_of(scene, axle_of(scene, "front"), VehicleOptions())
+    assert (found.front, found.wheelbase) == (front, pytest.approx(2.7, abs=0.05))
+    assert not any("axle" in one for one in found.assumed)

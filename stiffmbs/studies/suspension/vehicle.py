@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...model.model_data import ModelData
-from ...model.wheels import Wheel, centre_of_mass, marked_or_tyred
+from ...model.wheels import Wheel, axle_at, centre_of_mass, marked_or_tyred
 from ...reading.marker import GROUND
 from .axle import Axle
 
@@ -69,7 +69,7 @@ def vehicle_of(model: ModelData, axle: Axle, given: VehicleOptions) -> Vehicle:
     own = float(np.mean([wheel.contact[0] for wheel in axle.wheels]))
     wheels = [wheel for wheel in marked_or_tyred(model) if not _is_of(wheel, axle)]
     others = [float((wheel.centre if wheel.patch is None else wheel.patch)[0]) for wheel in wheels]
-    one = bool(wheels) and all(wheel is wheels[0] or wheel.on_axle_of(wheels[0]) for wheel in wheels)
+    one = bool(wheels) and all(any(map(wheel.on_axle_of, axle_at(wheels, "front"))) for wheel in wheels)
     front = bool(own > np.mean(others)) if others and (own > max(others) or own < min(others)) else None
     assumed = []
     if front is None and not others and (front := _by_name(axle)) is not None:
