@@ -207,7 +207,7 @@ def figure_charts(solution: Solution, figure: Figure) -> Iterator[Chart]:
             curves = [Curve(name, x, _known(run[name])) for name in names]
             yield Chart(
                 curve_chart(
-                    curves, _labelled(quantity, unit), _labelled(figure.x, run.unit(figure.x)), from_zero=False
+                    curves, _labelled(quantity, unit), _labelled(figure.x, run.unit(figure.x)), includes_zero=False
                 ),
                 tuple(names),
             )

@@ -369,7 +369,7 @@ def least_span():
 
 def width_of_a_label():
     curve = curves.Curve("", np.array([0.0, 1.0]), np.array([-1e9, -0.9e9]))
-    drawn = curves.curve_chart([curve], "", "", from_zero=False)
+    drawn = curves.curve_chart([curve], "", "", includes_zero=False)
     return float(drawn.partition('line x1="')[2].partition('"')[0])
 
 

@@ -61,7 +61,7 @@ class Car:
     # halfway between left and right wheels, in the axes of the sprung body, m
     reference: Point
     frame: Point
-    stated: bool  # True if the section `vehicle` has a `point`
+    point_given: bool  # True if the section `vehicle` has a `point`
 
     def behind(self, place: Point) -> float:
         """Return the distance from a place back to the rear axle, m."""
@@ -97,8 +97,8 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         """Return a place in ground axes as a point in the axes of the sprung body."""
         return _point(rotated(conjugate(own.orientation), place - np.array(own.position)))
 
-    stated = vehicle is not None and "point" in vehicle.model_fields_set
-    reference = vehicle.point if vehicle is not None and stated else on_body(centre)
+    point_given = vehicle is not None and "point" in vehicle.model_fields_set
+    reference = vehicle.point if vehicle is not None and point_given else on_body(centre)
     measured = np.array(own.position) + rotated(own.orientation, reference)
     joint = _steering(scene, steering)
     return Car(
@@ -107,7 +107,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
         float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
         float(middle[2]), _point(middle), _point(centre), _point(measured), reference,
-        on_body(np.array([centre[0], middle[1], centre[2]])), stated,
+        on_body(np.array([centre[0], middle[1], centre[2]])), point_given,
     )  # fmt: skip
 
 
