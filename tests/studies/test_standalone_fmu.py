@@ -303,7 +303,9 @@ print(json.dumps([tuned, [[list(map(float, r[n])) for n in ('sled.x', 'energy.to
 
 def test_a_parameter_acts_from_the_time_it_is_set(tmp_path):
     path = tmp_path / "tuned.yaml"
-    path.write_text(TUNED.replace("0.3,", "0,").replace("F: 3 N", "F: 0 N").replace("0.5*sin", "0*sin").replace("p: 1", "p: 0"))
+    path.write_text(
+        TUNED.replace("0.3,", "0,").replace("F: 3 N", "F: 0 N").replace("0.5*sin", "0*sin").replace("p: 1", "p: 0")
+    )
     stiffmbs.build_fmu(path, tmp_path / "tuned.fmu", ["sled.x"], native=True)
     script = """
 made = instance(tolerance=1e-9)

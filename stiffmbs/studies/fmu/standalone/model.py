@@ -248,7 +248,7 @@ def _parameters(
 ) -> tuple[dict[str, float], tuple[AffineNumber, ...]]:
     """Return the parameters that may be changed, and the numbers of forces that are affine functions of one of them.
 
-    All others are fixed: those that change bodies, joints, the start, or times of jumps, and those of which a number is no
+    All others are fixed: those that change bodies, joints, the start, or times of jumps. So are those of which a number is no
     affine function, or depends on an input or on another parameter as well. `of_inputs`: numbers that depend on inputs.
     """
     scene, found = job.data, dict[str, float]()
