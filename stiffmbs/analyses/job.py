@@ -40,9 +40,9 @@ from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import changed_values, described, in_use
 from .driven_turns import in_turns_of_new_drives, note_on_turns, turns_of_drives, with_turns
-from .found_before import FoundBefore
 from .load_scene import load_scene
 from .start_from import StartFrom, in_pose_of, started_from, starting_at, state_to_start_from
+from .stored_start import StoredStart
 
 if TYPE_CHECKING:
     from .conditions import Monitor
@@ -251,7 +251,7 @@ def prepare(
     with in_use(found.settings.tuning):
         dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
-    before = FoundBefore(found.data, found.settings, found.start_from)
+    before = StoredStart(found.data, found.settings, found.start_from)
     grid = found.grid
     if dynamics.system.has_inputs and _begins_at_breakpoint(dynamics, grid):
         grid = replace(grid, start=grid.start + grid.aside)

@@ -23,7 +23,7 @@ from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import listed
 from ..results.scales import ROUNDING
 from .far_away import beyond_its_size, far_away
-from .linearised.sides import MOVES, ForceJumpError, Instant, Kink, Moves, linearised_at
+from .linearised.kink import MOVES, ForceJumpError, Instant, Kink, Moves, linearised_at
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""

@@ -294,7 +294,7 @@ def _content(file: Path) -> str:
 
 def _equations(kind: Kind) -> list[str]:
     """Return the equations of a user's class as expressions: their sources cannot be traced."""
-    from .symbolic.stated import text_of
+    from .symbolic.element_equations import text_of
 
     return [text_of(kind)]
 

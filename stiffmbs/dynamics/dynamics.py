@@ -255,7 +255,7 @@ class Dynamics:
         if self._varied:
             self._varied.catch_up()
 
-    def sides(self, t: float) -> tuple[float, float]:
+    def times_around(self, t: float) -> tuple[float, float]:
         """Return the times just before and just after t if an input has a known breakpoint there, else t twice."""
         start, end, found = self._features
         if not len(found.all_breakpoints):

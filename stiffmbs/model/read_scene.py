@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
@@ -14,16 +15,18 @@ from ..elements.body import is_flexible, is_surface_load
 from ..elements.roads.field import read_roads
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
-from ..reading.fields import is_valid, sentence
+from ..reading.fields import is_valid, named_entries, sentence
 from ..reading.files.files_read import FOLDER, record, recorded
 from ..reading.files.include import read_including
 from ..reading.files.own_sources import own_sources
 from ..reading.files.quoted import written
 from ..reading.files.unchanged import Unchanged
-from ..reading.files.variables import read_variables
 from ..reading.files.yaml_text import Content, read_yaml
+from ..reading.formula.nodes import TIME
+from ..reading.formula.text import UNIT, FormulaError
+from ..reading.formula.variables import resolved
 from ..reading.names import beginnings
-from ..reading.units.units import Quantity
+from ..reading.units.units import CONSTANTS, UNITS, Quantity
 from .beams.division import beams_read
 from .beams.entries import names_in_formulas, with_beams
 from .files import expand
@@ -228,7 +231,7 @@ def _validated(
         for section in REPEATED:
             later.set(section, raw.get(section))
         raw = with_beams(raw, parameters, names_in_formulas(raw))
-        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
+        variables = _read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, object] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
         context["roads"] = read_roads(raw.get("roads"), context)
         raw = _with_flexible_bodies(raw, context)
@@ -299,3 +302,24 @@ def _family(raw: dict[str, object]) -> type[Scene]:
     if found not in (2, 3):
         raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
     return scene_class(found)
+
+
+def _read_variables(
+    found: object, parameters: Mapping[str, Quantity], tables: Collection[str], *sections: object
+) -> dict[str, ast.expr]:
+    """Return the syntax trees of a scene's variables by name; `sections`, of states and inputs, have other names.
+
+    Raise an InputError if a name is not an identifier or already has a meaning, or a formula cannot be read.
+    """
+    formulas: dict[str, str | float] = {}
+    for name, formula in named_entries("variables", found, "formulas"):
+        if name in UNITS:
+            raise InputError(f"variables.{name}: found the name of a unit, expected another: rename the variable")
+        if name in (*CONSTANTS, *parameters, *tables, TIME, UNIT):
+            raise InputError(f"variables.{name}: found a name with a meaning already, expected another")
+        if isinstance(formula, bool) or not isinstance(formula, str | int | float):
+            raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
+        formulas[name] = formula
+    with prefixed("variables.", FormulaError):
+        known = [name for section in sections if isinstance(section, dict) for name in section]
+        return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})

@@ -174,9 +174,9 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
             if isinstance(body, FloatingFrame):
                 of_parts += ((f"'{name.removesuffix('.frame')}'", note) for note in body.notes)
     if model.dimensions == 3 and len(model.forces) > 1:
-        from .mounted_tyres import mounted_alike
+        from .wheels import mounted_alike
 
-        own += mounted_alike(model.bodies, model.forces)
+        own += mounted_alike(model)
     return (*own, *of_users(of_parts)) if of_parts else tuple(own)
 
 

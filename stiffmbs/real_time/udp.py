@@ -13,8 +13,30 @@ import numpy as np
 
 from ..errors import InputError
 from .exchange import Exchanged
-from .packets import NUMBER, Packet
 from .parameters import REAL_TIME
+
+NUMBER = np.dtype("<f8")
+
+
+@dataclass(frozen=True)
+class Packet:
+    """Layout of a packet: a time, s, and the values of some names in their order, SI units."""
+
+    names: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Return the length of a packet, bytes."""
+        return NUMBER.itemsize * (1 + len(self.names))
+
+    def empty(self) -> np.ndarray:
+        """Return memory of a packet: the time and the values, of shape (1 + names,)."""
+        return np.zeros(1 + len(self.names), NUMBER)
+
+    def __str__(self) -> str:
+        """Return the layout as a clause for messages."""
+        return f"{self.size} bytes: {', '.join(('time', *self.names))}"
+
 
 LARGEST_DATAGRAM: Final = 65507
 """Largest length of the content of a datagram over IPv4, bytes."""

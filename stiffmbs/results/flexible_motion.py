@@ -13,9 +13,7 @@ import numpy as np
 from ..compile.quaternions import rotated
 from ..elements.spatial.flexible.bodies import FloatingFrame
 from ..errors import InputError, needs
-from ..flexible_bodies import quadratic
 from ..flexible_bodies.finite_elements import FiniteElements
-from ..flexible_bodies.quadratic import Quadratic
 from ..flexible_bodies.reduction import ReducedBody, static_solver
 from ..flexible_bodies.second_order import displacement_of_second_order, stress_of
 from ..flexible_bodies.shells.surfaces import Surfaces
@@ -25,6 +23,8 @@ from ..reading.did_you_mean import did_you_mean
 if TYPE_CHECKING:
     from ..model.scene import Scene
     from .solution import Solution
+AT_ONCE = 50_000_000
+"""Numbers in the coefficients of a function, or in its values, that are in memory at once; they take 400 MB."""
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ class FlexibleMotion:
     def peaks(self) -> dict[str, Peak]:
         """Return the largest von Mises and principal stress and the smallest principal stress, with place and time."""
         found: dict[str, Peak] = {}
-        step = max(1, quadratic.AT_ONCE // max(1, 6 * len(self.stress_nodes)))
+        step = max(1, AT_ONCE // max(1, 6 * len(self.stress_nodes)))
         for first in range(0, len(self.t), step):
             stress = self.stress(slice(first, first + step))
             principal = principal_stresses(stress)
@@ -276,3 +276,43 @@ class FlexibleMotion:
             wrong = chosen.max() if chosen.min() >= 0 else chosen.min()
             raise InputError(f"nodes: found node {wrong}, expected 0 to {count - 1}")
         return chosen
+
+
+class Quadratic:
+    """Homogeneous quadratic function of the coordinates of n modes.
+
+    Many values are sums of products of coordinates with coefficients, which are found once.
+
+    Parameters
+    ----------
+    function : callable
+        Function of a displacement, shape (size,). It returns an array of any shape.
+    modes : ndarray, shape (size, n)
+        Displacements by unit coordinates.
+    times : int
+        Number of times at which values may be needed. For fewer ones than coefficients, each value is found by itself.
+    """
+
+    def __init__(self, function: Callable[[np.ndarray], np.ndarray], modes: np.ndarray, times: int) -> None:
+        self._function, self._modes, self._times = function, modes, times
+        self._pairs = np.triu_indices(modes.shape[1])
+
+    def __call__(self, coordinates: np.ndarray) -> np.ndarray:
+        """Return the values at coordinates, shape (times, n); the first axis is that of the times."""
+        if self._coefficients is None:
+            found = [self._function(self._modes @ each) for each in coordinates]
+            return np.array(found) if found else np.empty((0, *self._function(np.zeros(len(self._modes))).shape))
+        one, other = self._pairs
+        return np.tensordot(coordinates[:, one] * coordinates[:, other], self._coefficients, 1)
+
+    @cached_property
+    def _coefficients(self) -> np.ndarray | None:
+        """Coefficients of products of two coordinates, on the first axis; None if there are too many."""
+        count, modes = len(self._pairs[0]), self._modes.T
+        if not 0 < count < self._times or count * self._function(modes[0]).size > AT_ONCE:
+            return None
+        squares = [self._function(mode) for mode in modes]
+        return np.array([
+            squares[k] if k == j else self._function(modes[k] + modes[j]) - squares[k] - squares[j]
+            for k, j in zip(*self._pairs, strict=True)
+        ])  # fmt: skip

@@ -59,17 +59,17 @@ def curve_chart(
     peak: str = "",
     step_x: float | None = None,
     marks: np.ndarray = NO_MARKS,
-    from_zero: bool = True,
+    includes_zero: bool = True,
 ) -> str:
     """Return curves in one chart.
 
     `title`, `abscissa`: quantities with their units. `peak`: words at the peak of the first curve. `step_x`: distance of
-    the numbers below the chart. `marks`: points with triangles, shape (n, 2). `from_zero`: False for an
+    the numbers below the chart. `marks`: points with triangles, shape (n, 2). `includes_zero`: False for an
     axis that need not contain zero.
     """
     x = np.concatenate([*(curve.x for curve in curves), marks[:, 0]])
     known = np.concatenate([*(curve.y[np.isfinite(curve.y)] for curve in curves), marks[:, 1]])
-    low, high = _range(np.append(known, 0.0) if from_zero or not len(known) else known)
+    low, high = _range(np.append(known, 0.0) if includes_zero or not len(known) else known)
     step_y = round_step(high - low)
     low, high = step_y * np.floor(low / step_y + 1e-9), step_y * np.ceil(high / step_y - 1e-9)
     start, end = _range(x[np.isfinite(x)])

@@ -55,7 +55,7 @@ def _steered(found: Handling) -> str:
 def _measured(found: Handling) -> str:
     """Return a sentence on the point at which channels of the vehicle are measured."""
     car = found.car
-    name = "point of the section vehicle" if car.stated else "centre of mass as described"
+    name = "point of the section vehicle" if car.point_given else "centre of mass as described"
     ahead, height = car.behind(car.measured), car.measured[2]
     return f"measured at the {name}, {ahead:.4g} m ahead of the rear axle, {height:.4g} m above the road"
 

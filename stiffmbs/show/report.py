@@ -6,7 +6,7 @@ The page begins with its finding, and with the loads of joints and force element
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
 from ..notes import Note
+from ..reading.units.quantity import LARGEST
 from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
@@ -27,16 +28,16 @@ from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..results.verification_words import verification_outcome
 from ..solve.trajectory import History
+from .curves import Curve, curve_chart
 from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
 from .drawing.poses import Poses, poses_of
 from .figure import drawn
-from .figure_charts import figure_charts, is_charted
 from .finding import finding, note_rows
 from .force_table import LOADS, with_bar
 from .html import MOST_ROWS
 from .loads import loads_of
-from .loads_shown import loads_shown
+from .loads_shown import MOST_CURVES, Chart, loads_shown
 from .origin import origin_section
 from .page.data import environment, page_data, page_file, page_parts
 from .page.modes import modes_data
@@ -182,3 +183,40 @@ def step_history(history: History) -> Sheet:
         dress(rows[1], ylabel="order")
     rows[-1].set_xlabel("time (s)")
     return sheet
+
+
+def is_charted(figure: Figure) -> bool:
+    """Return True if a figure can be drawn by charts: no path in space, no equal scales."""
+    return not figure.z and not figure.equal
+
+
+def figure_charts(solution: Solution, figure: Figure) -> Iterator[Chart]:
+    """Yield the charts of a figure: channels of one unit over time or over another channel, a few in each chart.
+
+    Raises InputError if there is no such channel.
+    """
+    run = displayed(solution)
+    x = run.time if figure.x == "time" else _known(run[figure.x])
+    of_unit: dict[str, list[str]] = {}
+    for channel in figure.y:
+        of_unit.setdefault(run.unit(channel), []).append(channel)
+    for unit, channels in of_unit.items():
+        for first in range(0, len(channels), MOST_CURVES):
+            names = channels[first : first + MOST_CURVES]
+            quantity = names[0] if len(names) == 1 else figure.title or "channels"
+            curves = [Curve(name, x, _known(run[name])) for name in names]
+            yield Chart(
+                curve_chart(
+                    curves, _labelled(quantity, unit), _labelled(figure.x, run.unit(figure.x)), includes_zero=False
+                ),
+                tuple(names),
+            )
+
+
+def _known(values: np.ndarray) -> np.ndarray:
+    """Return values without those of a diverged run."""
+    return np.where(np.abs(values) < LARGEST, values, np.nan)
+
+
+def _labelled(quantity: str, unit: str) -> str:
+    return f"{quantity}, {unit}" if unit else quantity

@@ -133,7 +133,7 @@ class Integrator(Generic[E]):
         dynamics, state, last = self.dynamics, self.dynamics.state, self.engine.last_step()
         if not event:
             if self._jumps.is_jump(state.u - u):
-                u = self._closed_velocities(dynamics.sides(before)[0], q, u)
+                u = self._closed_velocities(dynamics.times_around(before)[0], q, u)
             self._jumps.note(before, q, u)
         elif last and self._jumps.is_jump(state.u - u):
             back = SEARCH.finest * last[0]

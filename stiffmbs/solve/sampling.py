@@ -193,7 +193,7 @@ def _restarted(
     `jumps`: velocities that jump at such a breakpoint are noted there.
     """
     after = np.append(q[: dynamics.system.first_state], values)
-    begins = max(just_after(t), dynamics.sides(t)[1])
+    begins = max(just_after(t), dynamics.times_around(t)[1])
     begun = restarted(dynamics, begins, after, u, settings.projection)
     if begins > just_after(t):
         jumps.note(t, after, u)

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ..compile.inputs.enclosure import ROUNDING
 from ..compile.inputs.features import InputFeatures
+from ..compile.inputs.interval_arithmetic import ROUNDING
 from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import ChatteringError, SolverError
 from ..model.settings import RunSettings

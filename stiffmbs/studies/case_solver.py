@@ -11,7 +11,7 @@ from ..analyses.job import Job, Runnable, prepare
 from ..analyses.renumber import renumbered
 from ..analyses.run import Finished, finished, solved
 from ..errors import InputError, StiffmbsError
-from ..model.files.other_forces import OtherForces
+from ..model.files.changed_forces import ChangedForces
 from ..model.files.written_scene import WrittenScene
 from ..model.read_scene import read_changed
 from ..model.scene import Scene
@@ -70,7 +70,7 @@ class CaseSolver:
     def __init__(self, task: Task) -> None:
         self._task = task
         self._unchanged = Unchanged()
-        self._other_forces: OtherForces | None = None
+        self._changed_forces: ChangedForces | None = None
         self._jobs: list[Job] = []
         self._of_scene = self._changed = RunSettings()
         self._files: dict[str, str] = {}
@@ -84,15 +84,15 @@ class CaseSolver:
 
         Raises InputError if a value is not valid, or a file has changed since the study began.
         """
-        found = self._other_forces.scene(values) if self._other_forces and len(values) else None
+        found = self._changed_forces.scene(values) if self._changed_forces and len(values) else None
         if found is not None:
             return found
         written, names = self._task.scene, self._task.names
         with recorded() as files:
             scene = read_changed(written, list(zip(names, values, strict=True)), self._unchanged)
         self._check_files(files)
-        if self._other_forces is None:
-            self._other_forces = OtherForces(written, names, self._unchanged)
+        if self._changed_forces is None:
+            self._changed_forces = ChangedForces(written, names, self._unchanged)
         return scene
 
     def is_affine(self, number: int) -> bool:

@@ -356,7 +356,7 @@ class Simulation:
 
     def _steps_of(self, job: Job, q: np.ndarray, u: np.ndarray) -> Stepper:
         """Return a stepper from a state at the current time."""
-        t = job.dynamics.sides(self.t)[1]
+        t = job.dynamics.times_around(self.t)[1]
         return stepper_of(job, restarted(job.dynamics, t, q, u), t)
 
     def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:

@@ -208,13 +208,13 @@ class ImplicitSteps:
             self._advance(t)
 
     def _advance(self, t: float) -> None:
-        place = self._dynamics.sides(t)[0]
+        place = self._dynamics.times_around(t)[0]
         if self._jumped or self._since_jump:
             calm = self._dynamics.meets_no_feature(self._t, t)
             if not calm:
                 self._look_through(self._t)
             self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
-            begin = self._dynamics.sides(self._t)[1]
+            begin = self._dynamics.times_around(self._t)[1]
             if self._starts_soon and (calm or t <= self._end):
                 if place > just_after(begin):
                     self._started.advance(begin, place, NO_FEATURES if calm else self._features)
@@ -230,7 +230,7 @@ class ImplicitSteps:
                 self._end = self._t
                 self._look_through(self._t)
                 state = self._integrator.closed(self._t, self._at(self._t), self._last_step())
-                begin = self._dynamics.sides(self._t)[1]
+                begin = self._dynamics.times_around(self._t)[1]
                 self._begin(restarted(self._dynamics, begin, *state), begin)
             else:
                 self._t = sound(self._integrator, reached).t
@@ -251,7 +251,7 @@ class ImplicitSteps:
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
-        self._t, self._present, self.time, self._jumped = t, t, self._dynamics.sides(t)[1], True
+        self._t, self._present, self.time, self._jumped = t, t, self._dynamics.times_around(t)[1], True
         self.q[:], self.u[:], self.length = q, u, 0.0
 
 
@@ -356,14 +356,14 @@ class FixedSteps:
             self._begin(self._t, *kept)
         dynamics.forget_pivots()
         self._work.forget_rates()
-        place = dynamics.sides(t)[0]
+        place = dynamics.times_around(t)[0]
         try:
             with in_use(self._settings.tuning):
                 self._run(place)
         except (SolverError, KeyboardInterrupt):
             self.q[:], self.u[:] = kept
             raise
-        self._t, self.time = dynamics.sides(t)[1], place
+        self._t, self.time = dynamics.times_around(t)[1], place
         self._warn_of_growth()
 
     def _run(self, end: float) -> None:
@@ -391,7 +391,7 @@ class FixedSteps:
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`. A state that satisfies the constraints is not changed; the next step closes small violations."""
-        self._t = self.time = self._dynamics.sides(t)[1]
+        self._t = self.time = self._dynamics.times_around(t)[1]
         if self._has_events or self._is_off_constraints(q, u):
             self._begin(self._t, q, u)
         else:
@@ -429,7 +429,7 @@ class ShortRuns:
             if t > self._end:  # input features are determined once for all following steps
                 self._end = t + self._settings.duration
                 self._job.dynamics.input_features(self._t, self._end)
-            place = self._job.dynamics.sides(t)[0]
+            place = self._job.dynamics.times_around(t)[0]
             grid = Grid(self._t, place, np.array([self._t, place]))
             run = SOLVERS[self._settings.solver].solve
             found = run(self._job.dynamics, self._start, grid, self._settings, lambda _: None)
@@ -449,7 +449,7 @@ class ShortRuns:
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
-        self._t = self.time = self._job.dynamics.sides(t)[1]
+        self._t = self.time = self._job.dynamics.times_around(t)[1]
         with in_use(self._settings.tuning):
             self._start = restarted(self._job.dynamics, self._t, q, u)
         self.q[:], self.u[:] = self._start.q, self._start.u

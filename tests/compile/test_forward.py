@@ -13,7 +13,7 @@ from stiffmbs.errors import InputError
 HEADER = """
 from math import acos, asin, asinh, atan, atan2, copysign, cos, cosh, exp, floor, log, sin, sinh, sqrt, tan, tanh
 from stiffmbs.compile.machine.native.access import has_derivative, room, shifted, with_derivative
-from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
+from stiffmbs.compile.machine.native.simd import add_products, plus_product, quad, spread, sum_of
 
 
 """

@@ -13,8 +13,8 @@ from stiffmbs import AppliedForce, Body, Model
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.inputs import ends, of_time
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
-from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.features import InputFeatures, breakpoint_times, input_features
+from stiffmbs.compile.inputs.interval_arithmetic import Enclosure
 from stiffmbs.compile.inputs.of_time import Input
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.symbolic.symbols import SMOOTH

@@ -229,7 +229,7 @@ DECISIONS = {
     "flexible_bodies.reduction:COARSE": coarsest_shell_without_a_note,
     "flexible_bodies.shells.stress:KEPT": most_kept_triangles,
     "flexible_bodies.shells.surfaces:FOLD": sharpest_fold,
-    "flexible_bodies.quadratic:AT_ONCE": parts_of_stresses,
+    "results.flexible_motion:AT_ONCE": parts_of_stresses,
     "flexible_bodies.shells.shell:LEAST_DRILLING": drilling_without_membrane,
     "flexible_bodies.shells.shell:WARPED": most_warped_quadrilateral,
     "flexible_bodies.shells.shell:AT_ONCE": parts_of_a_shell,
@@ -262,7 +262,7 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "flexible_bodies.reduction:COARSE": 14,
-    "flexible_bodies.shells.stress:KEPT": 20, "flexible_bodies.shells.surfaces:FOLD": 23, "flexible_bodies.quadratic:AT_ONCE": 8,
+    "flexible_bodies.shells.stress:KEPT": 20, "flexible_bodies.shells.surfaces:FOLD": 23, "results.flexible_motion:AT_ONCE": 8,
     "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:AT_ONCE": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,

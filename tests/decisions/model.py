@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.errors import InputError
-from stiffmbs.model import flexible, mounted_tyres, tuning
+from stiffmbs.model import flexible, tuning, wheels
 from stiffmbs.model.beams import axis, discretise, drawn_section, interpolation, rigid_motion, section
 from stiffmbs.model.files import expand, scenes_read_before
 from stiffmbs.model.parts import changes, frame, hard_points, instances
@@ -138,19 +138,18 @@ def largest_offset_on_an_axle():
 
     def is_on_axle(offset):
         left, right = (Record(centre=np.array(at), axis=axis_of_both) for at in ((offset, 1.0, 0.0), (0.0, 0.0, 0.0)))
-        return mounted_tyres._Wheel.to_the_left_of(left, right) != 0.0
+        return wheels.Wheel.to_the_left_of(left, right) != 0.0
 
     return count_while(lambda offset: is_on_axle(0.01 * offset), DOUBLES)
 
 
 def coefficients_of_a_note():
     mounted = Record(mounted_side=lambda: ("data", 1, ["p"] * 20))
-    wheels = {
-        name: Record(name=name, tyre=mounted, to_the_left_of=lambda _, place=place: place)
-        for name, place in (("l", 1.0), ("r", -1.0))
-    }
-    with patch.multiple(mounted_tyres, Tyre=Record, _wheel=lambda _, name, __: wheels[name]):
-        (note,) = mounted_tyres.mounted_alike({}, {"l": Record(), "r": Record()})
+    found = [
+        Record(tyre=name, to_the_left_of=lambda _, place=place: place) for name, place in (("l", 1.0), ("r", -1.0))
+    ]
+    with patch.multiple(wheels, tyres_of=lambda _: {"l": mounted, "r": mounted}, wheels_of=lambda _: found):
+        (note,) = wheels.mounted_alike(None)
     return note.count("p,") + note.count("p and others")
 
 
@@ -296,8 +295,11 @@ DECISIONS = {
     "model.flexible:SAME_SHAPES": lambda: count_while(
         lambda size: not refused(lambda: flexible._nearest(np.eye(2), np.diag([1.0, size]), "a")), 1.1 * BELOW
     ),
-    "model.mounted_tyres:ALONG": largest_offset_on_an_axle,
-    "model.mounted_tyres:NAMED": coefficients_of_a_note,
+    "model.wheels:ALONG": largest_offset_on_an_axle,
+    "model.wheels:NAMED": coefficients_of_a_note,
+    "model.wheels:ON_MIDDLE_PLANE": lambda: count_while(
+        lambda y: wheels.side_of(np.array([0.0, y, 0.0])) == "left", BELOW
+    ),
     "model.parts.frame:STRAIGHT": largest_oblique_entry,
     "model.parts.hard_points:SAME_PLACE": largest_shift_to_the_right,
     "model.parts.hard_points:FARTHEST": farthest_hard_point,
@@ -332,7 +334,8 @@ EXPECTED = {
     "model.beams.interpolation:QUADRATURE": 8, "model.beams.rigid_motion:TERMS": 30, "model.beams.section:PRINCIPAL": 27,
     "model.beams.section:CENTRED": 27, "model.files.expand:MOST_REPEATS": 27, "model.files.scenes_read_before:MOST_ELEMENTS": 23,
     "model.files.scenes_read_before:LARGEST": 10, "model.flexible:SHARE": 0.001, "model.flexible:SMALL": 0.001, "model.flexible:SAME_SHAPES": 1,
-    "model.mounted_tyres:ALONG": 14, "model.mounted_tyres:NAMED": 3, "model.parts.frame:STRAIGHT": 27, "model.parts.hard_points:SAME_PLACE": 27,
+    "model.wheels:ALONG": 14, "model.wheels:NAMED": 3, "model.wheels:ON_MIDDLE_PLANE": 80,
+    "model.parts.frame:STRAIGHT": 27, "model.parts.hard_points:SAME_PLACE": 27,
     "model.parts.hard_points:FARTHEST": 23, "model.parts.instances:MOST_NESTED": 10, "model.parts.instances:MOST_INSTANCES": 27,
     "model.parts.instances:MOST_VALUES": 27, "model.paths.curves:Stations.spacing": 401, "model.paths.curves:Stations.outlet": 20.0, "model.paths.curves:Stations.most_stations": 2001,
     "model.paths.curves:Stations.samples": 8.0, "model.paths.lanes:ROUGHNESS": 30.0, "model.paths.lanes:ANCHOR": 0.001,

@@ -217,7 +217,7 @@ def farthest_torque():
 
 def width_of_a_wheel():
     with patch.multiple(
-        spatial, radius_of=lambda _: 1.0, _coefficient=lambda *_: 0.0,
+        spatial, radius_of=lambda _: 1.0, coefficient=lambda *_: 0.0,
         lathe=lambda profile, _: reach(np.max(profile[:, 1]) / np.max(spatial.PROFILE[:, 1])),
     ):  # fmt: skip
         return reached(lambda: spatial.wheel(Record(element=None, put=nothing), Record(with_axes=nothing), None))
@@ -228,7 +228,7 @@ def spokes_of_a_wheel():
     draft = Record(
         element=None, i=Record(with_axes=nothing), put=lambda _site, _role, *found, **__: shapes.append(found)
     )
-    with patch.multiple(spatial, radius_of=lambda _: 1.0, _coefficient=lambda *_: 0.0):
+    with patch.multiple(spatial, radius_of=lambda _: 1.0, coefficient=lambda *_: 0.0):
         spatial.wheel(draft, draft.i, None)
     return len(shapes[1]) - 1
 
@@ -369,7 +369,7 @@ def least_span():
 
 def width_of_a_label():
     curve = curves.Curve("", np.array([0.0, 1.0]), np.array([-1e9, -0.9e9]))
-    drawn = curves.curve_chart([curve], "", "", from_zero=False)
+    drawn = curves.curve_chart([curve], "", "", includes_zero=False)
     return float(drawn.partition('line x1="')[2].partition('"')[0])
 
 

@@ -6,8 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, SpringDamper, compile_model
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
-from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.features import breakpoint_times
+from stiffmbs.compile.inputs.interval_arithmetic import Enclosure
 from stiffmbs.compile.inputs.of_time import _OF_ARRAYS, inputs_of
 from stiffmbs.compile.inputs.zeros import zeros
 from stiffmbs.reading.table import Table

@@ -14,10 +14,9 @@ from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.run import run
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
-from stiffmbs.flexible_bodies.quadratic import Quadratic
 from stiffmbs.flexible_bodies.reduction import reduce, static_solver
 from stiffmbs.flexible_bodies.second_order import displacement_of_second_order, stress_of
-from stiffmbs.results.flexible_motion import FlexibleMotion
+from stiffmbs.results.flexible_motion import FlexibleMotion, Quadratic
 
 from .bars import HEIGHT, LENGTH, WIDTH, bar, face, mesh_of_bar
 

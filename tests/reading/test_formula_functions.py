@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS as ENCLOSED
-from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.features import breakpoint_times
+from stiffmbs.compile.inputs.interval_arithmetic import Enclosure
 from stiffmbs.compile.inputs.of_time import inputs_of
 from stiffmbs.compile.symbolic.generate import HEADER
 from stiffmbs.compile.symbolic.symbols import SMOOTH

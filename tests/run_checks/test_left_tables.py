@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stiffmbs import Body, Drive, InputError, Model, Prismatic, SolverError, Table, read_scene, run, simulation
-from stiffmbs.compile.inputs.enclosure import Enclosure
+from stiffmbs.compile.inputs.interval_arithmetic import Enclosure
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.table_values import curve, parts_of
 from stiffmbs.elements.roads.rolling_filter import heights_of

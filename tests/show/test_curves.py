@@ -9,7 +9,7 @@ import stiffmbs
 from stiffmbs.errors import InputError
 from stiffmbs.model.scene import Figure
 from stiffmbs.show.curves import Curve, _thinned, curve_chart, polar_chart, round_step, spark_line
-from stiffmbs.show.figure_charts import figure_charts, is_charted
+from stiffmbs.show.report import figure_charts, is_charted
 
 from ..conftest import EXAMPLES
 
@@ -48,7 +48,7 @@ def test_any_values_can_be_drawn(values):
 def test_an_axis_without_zero_has_labels_that_differ_and_fit():
     """Energies of -757 J that change by 1 mJ: the labels have ten digits, and begin within the chart."""
     x = np.linspace(0, 1, 20)
-    text = curve_chart([Curve("a", x, -757.332 + 1e-3 * x)], "energy, J", "time, s", from_zero=False)
+    text = curve_chart([Curve("a", x, -757.332 + 1e-3 * x)], "energy, J", "time, s", includes_zero=False)
     labels = [
         part for part in ElementTree.fromstring(text) if part.get("text-anchor") == "end" and part.text != "time, s"
     ]
@@ -61,7 +61,7 @@ def test_an_axis_without_zero_has_labels_that_differ_and_fit():
 
 def test_a_constant_is_drawn_flat():
     x = np.linspace(0, 1, 20)
-    text = curve_chart([Curve("a", x, 5.0 + 1e-12 * np.sin(9 * x))], "a, N", "time, s", from_zero=False)
+    text = curve_chart([Curve("a", x, 5.0 + 1e-12 * np.sin(9 * x))], "a, N", "time, s", includes_zero=False)
     curve = next(part for part in ElementTree.fromstring(text) if part.get("class") == "curve c0")
     assert len({pair.split(",")[1] for pair in curve.get("d")[1:].split("L")}) == 1
 

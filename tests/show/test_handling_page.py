@@ -42,7 +42,7 @@ def found(angular: bool = True, tests: Any = ("lane_change", "ride"), **metrics:
         track=1.5,
         steering="guide",
         angular=angular,
-        stated=False,
+        point_given=False,
         measured=(0.0, 0.0, 0.5),
         behind=lambda place: 1.2,
     )

@@ -14,7 +14,7 @@ from ...redundancy.redundancy import Redundancy
 from ...tuning import in_use
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
-from .sides import Instant
+from .kink import Instant
 
 
 @dataclass(frozen=True)

@@ -29,8 +29,8 @@ from ..settled import GROWING
 from ..start_from import StartFrom
 from ..steady import rotation_as_one
 from .at_state import AtState, at_state
+from .kink import Kink, linearised_at
 from .modes_table import mode_lines
-from .sides import Kink, linearised_at
 
 ON_A_SCREEN = 20
 """Number of modes that are printed, so that they fit on a screen."""

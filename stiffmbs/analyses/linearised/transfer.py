@@ -25,7 +25,7 @@ from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .at_state import AtState, at_state
 from .inputs import ForceOnBody, Parameterised, force_on
-from .sides import linearised_at
+from .kink import linearised_at
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of displacements and angles."""

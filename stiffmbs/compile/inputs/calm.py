@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...reading.formula.nodes import TIME, reading_order
-from .enclosure import Enclosure
 from .features import PIECES_OF_A_STEP, aside, conditions
+from .interval_arithmetic import Enclosure
 from .of_time import evaluated_at, evaluated_within
 from .pieces import longest_pieces
 from .table_ranges import TableRanges

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...reading.formula.functions import IN_FORMULAS, FormulaFunction, step5_value, step_value
 from ...reading.formula.text import evaluate, parse
-from .enclosure import (  # noqa: F401 (the table of functions names them)
+from .interval_arithmetic import (  # noqa: F401 (the table of functions names them)
     EVERYWHERE,
     Enclosure,
     Operand,

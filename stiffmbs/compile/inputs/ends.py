@@ -1,6 +1,6 @@
 """Times at which an input has a pole or ends; no motion exists beyond them.
 
-Interval arithmetic (`stiffmbs.compile.inputs.enclosure`) bounds formulas over time intervals. Intervals without a bound
+Interval arithmetic (`stiffmbs.compile.inputs.interval_arithmetic`) bounds formulas over time intervals. Intervals without a bound
 are subdivided down to the resolution of time. Nearby values then distinguish a pole from a removable singularity, as
 that of sin(t)/t at zero.
 """

@@ -21,7 +21,7 @@ from ...reading.formula.functions import EACH, IN_FORMULAS, Breakpoints
 from ...reading.formula.nodes import TIME, reading_order
 from ..system import System
 from .distinct import distinct
-from .enclosure import ROUNDING
+from .interval_arithmetic import ROUNDING
 from .of_time import Input, inputs_of
 from .pieces import Bounds, InputPieces
 from .zeros import FIRST_STRETCHES, SHORTEST_STRETCH, ZERO, TooMany, zeros

@@ -20,7 +20,7 @@ from ...reading.formula.text import BINARY, UNARY, UNIT
 from ...reading.table import Table
 from ..system import System
 from .enclosed_functions import FUNCTIONS as ENCLOSED
-from .enclosure import Enclosure
+from .interval_arithmetic import Enclosure
 from .table_ranges import TableRanges
 
 WRITTEN = "written"

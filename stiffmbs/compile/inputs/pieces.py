@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .enclosure import ROUNDING, Enclosure
+from .interval_arithmetic import ROUNDING, Enclosure
 from .of_time import Input
 
 OF_CHANGE = 3e-3

@@ -9,7 +9,7 @@ import numpy as np
 from ...reading.table import Table
 from ..table_values import curve, parts_of
 from .distinct import distinct
-from .enclosure import EVERYWHERE, Enclosure, Range, between_turns, hull
+from .interval_arithmetic import EVERYWHERE, Enclosure, Range, between_turns, hull
 from .zeros import MOST_STRETCHES, TooMany
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from .enclosure import ROUNDING, Enclosure
+from .interval_arithmetic import ROUNDING, Enclosure
 
 FIRST_STRETCHES = 64
 """Initial number of intervals of the search."""

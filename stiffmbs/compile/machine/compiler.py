@@ -101,7 +101,7 @@ def of_source(
 def _called(with_geometry: bool) -> str:
     """Return a digest of the modules that generated sources call, and of what these read."""
     here = Path(__file__).parent
-    names = ("access", "nonsmooth", "quads", "spline", "rotation_vector", "python_call")
+    names = ("access", "nonsmooth", "simd", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names]
     files += [file for folder in ("flexible", "beams") for file in python_files(here / folder)]
     elements = here.parents[1] / "elements"

@@ -20,8 +20,8 @@ from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import away_from_pole
 from .element import SymbolicElement
+from .element_equations import ElementEquations, equations_of_force, equations_of_joint, measured_of_joint, multipliers
 from .residue import PRIME, residue
-from .stated import Stated, measured_by_joint, multipliers, stated_by_force, stated_by_joint
 from .symbols import Symbols, symbols_of
 from .variation import Summand, Variation
 
@@ -90,8 +90,8 @@ def derive(kind: Kind) -> Derived:
 
 
 def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
-    e, stated = symbols.element, stated_by_joint(kind, symbols)
-    C, rates = sp.Matrix(stated.position), sp.Matrix(stated.velocity)
+    e, equations = symbols.element, equations_of_joint(kind, symbols)
+    C, rates = sp.Matrix(equations.position), sp.Matrix(equations.velocity)
     V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
     J = e.by_u.matrix(V)
     _refuse_rates_by_velocities(e, C)
@@ -120,8 +120,8 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "gamma": -sp.Matrix(second),
         "G_lam": e.by_q.matrix(force), "G_mu": _symmetric(e.by_q.matrix(e.by_q.work(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_u.matrix(turning),
-        "reaction": _reaction(stated, e, -force),
-        "event_function": sp.Matrix(stated.event_functions), "power": sp.Matrix([power]),
+        "reaction": _reaction(equations, e, -force),
+        "event_function": sp.Matrix(equations.event_functions), "power": sp.Matrix([power]),
         "argument": symbols.arguments,
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
@@ -134,7 +134,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         for r, row in enumerate(e.by_accelerations(equation) + rest for equation, rest in zip(V, second, strict=True))
         for column in e.by_q.of(row)
     ]
-    entries["measured"] = _entries(sp.Matrix(measured_by_joint(kind, symbols, lam)))
+    entries["measured"] = _entries(sp.Matrix(measured_of_joint(kind, symbols, lam)))
     for name in ("C", "V"):  # complete, including zeros: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
     variation = Variation(symbols)
@@ -157,33 +157,33 @@ def _refuse_rates_by_velocities(e: SymbolicElement, C: sp.Matrix) -> None:
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
-    e, stated = symbols.element, stated_by_force(kind, symbols)
-    f = e.by_u.work(stated.powers)
+    e, equations = symbols.element, equations_of_force(kind, symbols)
+    f = e.by_u.work(equations.powers)
     joint_lam = symbols.pressed
-    power, losses = power_of_force(stated, symbols, kind.element.may_keep_energy)  # type: ignore[attr-defined]
+    power, losses = power_of_force(equations, symbols, kind.element.may_keep_energy)  # type: ignore[attr-defined]
     terms = {
         "f": f, "f_q": e.by_q.matrix(f), "f_u": e.by_u.matrix(f),
         "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
-        "reaction": _reaction(stated, e, f), "potential": sp.Matrix([stated.potential]),
-        "event_function": sp.Matrix(stated.event_functions), "limit": sp.Matrix(stated.limits),
-        "argument": symbols.arguments, "power": sp.Matrix([power]), "measured": sp.Matrix(stated.measured),
+        "reaction": _reaction(equations, e, f), "potential": sp.Matrix([equations.potential]),
+        "event_function": sp.Matrix(equations.event_functions), "limit": sp.Matrix(equations.limits),
+        "argument": symbols.arguments, "power": sp.Matrix([power]), "measured": sp.Matrix(equations.measured),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    entries |= _rates(e, sp.Matrix(stated.rates), e.own, joint_lam)
-    entries |= _condensed(e, stated)
+    entries |= _rates(e, sp.Matrix(equations.rates), e.own, joint_lam)
+    entries |= _condensed(e, equations)
     for name, of in (("f_alg", "f_q"), ("rate_alg", "rate_q")):
         entries[name] = _of_algebraic(kind, e, entries[of])
     return Derived(0, 0, symbols, entries, losses)
 
 
-def _condensed(e: SymbolicElement, stated: Stated) -> dict[str, Sequence[Entry | LateEntry]]:
+def _condensed(e: SymbolicElement, equations: ElementEquations) -> dict[str, Sequence[Entry | LateEntry]]:
     """Return the efforts of a stiff force, the derivatives of its rates by velocities, and those of the efforts."""
-    efforts = [effort for effort, _ in stated.condensed]
+    efforts = [effort for effort, _ in equations.condensed]
     return {
         "effort": [Entry(effort, row) for row, effort in enumerate(efforts)],
-        "lever": _entries(e.by_u.matrix(rate for _, rate in stated.condensed)),
+        "lever": _entries(e.by_u.matrix(rate for _, rate in equations.condensed)),
         "effort_q": [
             LateEntry(partial(e.by_q.derivative, effort, column), row, column)
             for row, effort in enumerate(efforts)
@@ -253,10 +253,10 @@ def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     return {name: [replace(entry, row=first + entry.row) for entry in found] for name, found in entries.items()}
 
 
-def _reaction(stated: Stated, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
+def _reaction(equations: ElementEquations, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
     """Return force and torque about the element's point from the generalised force on its first body."""
     first = e.frames[0]
-    return first.wrench(force[: len(first.u), :], sp.Matrix(stated.point))
+    return first.wrench(force[: len(first.u), :], sp.Matrix(equations.point))
 
 
 def _symmetric(second: sp.Matrix) -> sp.Matrix:
@@ -288,13 +288,15 @@ def power_of_joint(e: SymbolicElement, V: sp.Matrix, lam: sp.Matrix) -> sp.Expr:
     return sp.Add(*(factor * without(e, row, at_rest) for factor, row in zip(lam, V, strict=True)))
 
 
-def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> tuple[sp.Expr, list[int] | None]:
+def power_of_force(
+    equations: ElementEquations, symbols: Symbols, may_keep: bool = True
+) -> tuple[sp.Expr, list[int] | None]:
     """Return a force's power beyond the rate of its potential, and the numbers that must be zero for it to vanish.
 
     `may_keep`: `Force.may_keep_energy`. Returns `power`: W; `losses`: numbers of the element, in the order of
     `ElementData.numbers`; None if unknown.
     """
-    e, powers, potential = symbols.element, stated.powers, stated.potential
+    e, powers, potential = symbols.element, equations.powers, equations.potential
     work = sp.Add(*(Q * v for Q, v in powers))
     if not may_keep:
         return work if potential == 0 else work + e.rate(potential), None

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from os.path import relpath
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ...errors import InputError
-from .names_of_files import with_names_of_files
 from .quoted import quoted, written
 from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text
@@ -20,6 +20,21 @@ MOST_FILES = 100
 """Largest number of included files; repeated inclusions count."""
 LARGEST = 20_000_000
 """Largest size of an included file, bytes."""
+PLACES = (
+    ("bodies", "*", "mesh"),
+    ("bodies", "*", "matrices"),
+    *(("bodies", "*", "matrices", key) for key in ("stiffness", "mass", "nodes", "rows")),
+    ("bodies", "*", "geometry", "file"),
+    ("bodies", "*", "geometry", "*", "file"),
+    ("forces", "*", "properties"),
+    ("forces", "*", "road", "file"),
+    ("roads", "*", "file"),
+)
+"""Paths of the names of files in a scene; a star is any name, or any place in a list."""
+SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"parts": ("*",), "options": ("*", "*"), "stages": ("*", "change")}
+)
+"""Paths of further sections, in the sections that have them."""
 
 
 @dataclass
@@ -119,7 +134,7 @@ class _Including:
                 f"{file}: found {'nothing' if found is None else 'other content'}, expected a mapping of sections"
             )  # no quote
         if name.parent != Path():
-            found = with_names_of_files(found, lambda own: self._from_scene(own, name))
+            found = _with_names_of_files(found, lambda own: self._from_scene(own, name))
         return self.whole(found, str(file), name.parent, (*within, file.resolve()), path)
 
     def _from_scene(self, name: str, within: Path) -> str:
@@ -178,3 +193,30 @@ def _own(
         raise InputError(f"{where}: found '{'.'.join(map(str, path))}' in {first} and in {source}, expected it in one")
     place[name] = value
     owners[path] = source
+
+
+def _with_names_of_files(found: Any, change: Callable[[str], str]) -> Any:
+    """Return the sections of a file with their names of files changed; Python objects and mappings stay as they are.
+
+    The sections are not modified, because YAML aliases may share them.
+    """
+    if not isinstance(found, dict):
+        return found
+    for path in PLACES:
+        found = _replaced(found, path, lambda name: change(name) if isinstance(name, str) else name)
+    for section, path in SECTIONS.items():
+        found = _replaced(found, (section, *path), lambda inner: _with_names_of_files(inner, change))
+    return found
+
+
+def _replaced(found: Any, path: tuple[str, ...], change: Callable[[Any], object]) -> Any:
+    """Return content with the values at a path changed."""
+    if not path:
+        return change(found)
+    first, *rest = path
+    inner = tuple(rest)
+    if isinstance(found, list) and first == "*":
+        return [_replaced(part, inner, change) for part in found]
+    if isinstance(found, dict):
+        return {key: _replaced(part, inner, change) if first in (key, "*") else part for key, part in found.items()}
+    return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -10,20 +10,54 @@ from typing import Any, Final
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
+from ...elements.spatial.orientation import matrix
 from ...reading.files.quoted import listed, quoted
 from ...reading.files.requested import unused_notes
+from ...reading.files.xml_nodes import Node
 from ..robot import Closure, Connection, Link, LinkJoint, Robot, RobotFault, Transmission
 from .contacts import contacts as touching
-from .fields import REASONS, WITH_CONTACTS
 from .files import Files, Source, Version
 from .gears import relations
 from .joints import GEARBOX, KINDS, Arc, arcs, effort, link_joints
-from .links import Body, body_of
 from .models import Models
-from .poses import HERE, Pose, numbers, text_of
+from .poses import HERE, Pose, flag, number, numbers, pose_of, text_of
 from .scopes import Frame, Scope
+from .solids import of_shapes
 from .tree import Branch, spanning_tree
 
+SHAPES, SENSORS, SOLVER, LIMITS = (
+    "shapes and contacts are left out",
+    "requests of the scene measure",
+    "settings of the simulator",
+    "limits are not held",
+)
+DRAWING, PLUGINS = "graphics", "plugins are programs of the simulator"
+REASONS: Mapping[str, Mapping[str, str]] = {
+    "*": {
+        "<plugin>": PLUGINS, "<sensor>": SENSORS, "<light>": DRAWING, "<actor>": DRAWING, "<visual>": DRAWING,
+        "<projector>": DRAWING, "<particle_emitter>": DRAWING, "<collision>": SHAPES, "<gripper>": SHAPES,
+        "<self_collide>": SHAPES, "<allow_auto_disable>": SOLVER,
+    },
+    "joint": {"<physics>": SOLVER}, "link/collision": {"*": SHAPES},
+    "joint/axis/limit": {"*": LIMITS}, "joint/axis2/limit": {"*": LIMITS},
+    "link": {"<kinematic>": "all links follow the forces", "<must_be_base_link>": SOLVER, "<audio_source>": SENSORS, "<audio_sink>": SENSORS},
+    "world": {
+        "<scene>": DRAWING, "<gui>": DRAWING, "<audio>": SENSORS, "<physics>": SOLVER, "<road>": DRAWING, "<population>": SHAPES,
+        "<state>": "models start where their poses place them", "<atmosphere>": "the fluid is left out", "<wind>": "the fluid is left out",
+        "<magnetic_field>": SENSORS, "<spherical_coordinates>": SENSORS,
+    },
+}  # fmt: skip
+"""Reasons why elements have no effect."""
+WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
+    **{key: value for key, value in REASONS.items() if key != "link/collision"},
+    "link/collision/geometry/mesh": {"*": "meshes have no contact"},
+}
+"""Reasons if the shapes of contacts are read."""
+
+
+PRODUCTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+OFF = ("self_collide", "enable_wind", "kinematic", "must_be_base_link")
+"""Flags of a link without effect if they are false."""
 GRAVITY: Final = (0.0, 0.0, -9.8)
 """Gravity of a world that states none, m/s^2; the format's default."""
 IN_WORLD: Final[Version] = (1, 6)
@@ -108,7 +142,7 @@ def _links(root: Scope) -> Iterator[Placed]:
         for name, node in scope.links.items():
             where = f"link {quoted(scope.prefix + name)}"
             pose = scope.in_root(scope.pose(name, where))
-            yield Placed(f"{scope.prefix}{name}", pose, body_of(where, name, node, scope), scope.static)
+            yield Placed(f"{scope.prefix}{name}", pose, _body_of(where, name, node, scope), scope.static)
 
 
 def _check_names(joints: Sequence[Arc]) -> None:
@@ -196,3 +230,40 @@ def _notes(
         yield f"links without mass or inertia have the defaults of SDF, 1 kg and 1 kg m^2: {listed(assumed)}"
     if models.omitted:
         yield f"included scenery that is not next to the file is left out: {listed(models.omitted)}"
+
+
+@dataclass(frozen=True)
+class Body:
+    """Mass, kg, centre of mass, m, and inertia about it, kg m^2, in the frame of a link.
+
+    `lifted`: fraction of its weight that does not act. `assumed`: True if the file gives no mass or inertia.
+    """
+
+    mass: float = 1.0
+    center_of_mass: tuple[float, ...] = ORIGIN
+    inertia: np.ndarray | None = None
+    lifted: float = 0.0
+    assumed: bool = False
+
+
+def _body_of(where: str, name: str, link: Node, scope: Scope) -> Body:
+    """Return the mass and inertia of a ``<link>``; 1 kg and 1 kg m^2 are the format's defaults."""
+    link.without_effect(*(tag for tag in OFF if link.unrecorded(tag) in ("0", "false")))
+    lifted = 0.0 if flag(where, link, "gravity", True) else 1.0
+    inertial = link.find("inertial")
+    if inertial is None:
+        return Body(inertia=np.eye(3), lifted=lifted, assumed=True)
+    if (inertial.get("auto") or "").lower() in ("1", "true"):
+        mass, centre, tensor = of_shapes(where, name, link, inertial, scope)
+        return Body(mass, tuple(map(float, centre)), tensor, lifted)
+    pose = pose_of(where, inertial.find("pose"))
+    mass = number(where, inertial, "mass", 1.0)
+    if mass < 0:
+        raise RobotFault(f"{where}: found a mass of {mass:g}, expected 0 or more")
+    moments = inertial.find("inertia")
+    xx, xy, xz, yy, yz, zz = (number(where, moments, key, float(key[1] == key[2])) for key in PRODUCTS)
+    A = matrix(pose.orientation)
+    with np.errstate(over="ignore", invalid="ignore"):  # moments that are not finite are refused with the body
+        tensor = A @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ A.T
+        tensor = (tensor + tensor.T) / 2
+    return Body(mass, pose.position, tensor, lifted, assumed=moments is None or inertial.find("mass") is None)

@@ -13,6 +13,7 @@ from ...elements.element import Element, Joint
 from ...elements.spatial.flexible.bodies import FloatingFrame
 from ...elements.spatial.flexible.interface import FlexibleInterface
 from ...model.model_data import ModelData
+from ...model.wheels import radius_of
 from ...reading.formula.formula import Formula
 from ...reading.joint_name import JointName
 from ...reading.marker import GROUND, MarkerReference
@@ -22,7 +23,6 @@ from .draft import Draft, Site
 from .poses import Poses, described_poses, placed
 from .scene_graph import Anchor, Drawing, Mark, Name, Part, body_colors
 from .surroundings import with_surroundings
-from .symbols.spatial import radius_of
 
 UNIT, CROWDED = 0.024, 10
 """Unit of symbols relative to the mechanism's size, and number of elements above which symbols become smaller."""
@@ -91,7 +91,7 @@ def drawing_of(
 
 def _wheels(data: ModelData) -> dict[str, float]:
     """Return the radius of the wheel that a tyre draws, by body, m."""
-    return {tyre.i.body: radius_of(tyre) for tyre in data.forces.values() if tyre.symbol == "tyre"}  # type: ignore[attr-defined]
+    return {tyre.i.body: radius_of(tyre) or 0.0 for tyre in data.forces.values() if tyre.symbol == "tyre"}  # type: ignore[attr-defined]
 
 
 def _first_nodes(data: ModelData) -> dict[str, str]:

@@ -99,12 +99,12 @@ def _charts(
         for k, part in enumerate(of_curve.values()):
             rows = sorted(part, key=lambda case: case[x])
             curves.append(Curve("", _column(rows, x), _column(rows, output), f"c{k}"))
-        yield curve_chart(curves, output, x, from_zero=False)
+        yield curve_chart(curves, output, x, includes_zero=False)
         return
     for name in names:
         if known and isinstance(known[0][name], float | int):
             points = np.array([[case[name], case[output]] for case in known], dtype=float)
-            yield curve_chart([], output, name, marks=points, from_zero=False)
+            yield curve_chart([], output, name, marks=points, includes_zero=False)
 
 
 def _column(cases: Sequence[Case], name: str) -> np.ndarray:

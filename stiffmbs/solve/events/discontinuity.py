@@ -38,7 +38,7 @@ class JumpParameters:
 JUMP = tuned("jumps", JumpParameters())
 
 SWITCHES, OF_STATES, CROSSED, BY_VELOCITIES, SIDE = together(
-    "stiffmbs.solve.events.native.sides",
+    "stiffmbs.solve.events.native.sign_changes",
     SHORT,
     switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
     of_states="void(int64, float64*, float64*, float64*, int64, float64*, int64*)",

@@ -9,7 +9,6 @@ from ..integrator import Integrator, integrated
 from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from .adaptive import AdaptiveSteps
-from .euler_cromer import EULER_CROMER
 from .fixed import solve_with_fixed_steps
 from .integration import Integration
 from .scheme import Scheme
@@ -25,19 +24,18 @@ def _traits(scheme: Scheme) -> Traits:
     return Traits(scheme.name, READ_BY_FIXED_STEPS, fixed_steps=True, order=scheme.order, locates_events=False)
 
 
-TRAITS = {scheme.name: _traits(scheme) for scheme in (EULER_CROMER, *SCHEMES.values())}
+TRAITS = {scheme.name: _traits(scheme) for scheme in SCHEMES.values()}
 """Traits by scheme."""
 
 
 def traits(settings: RunSettings) -> Traits:
     """Return the traits of the scheme in the settings; by default `dop853`, or `euler_cromer` if a step is given."""
-    return TRAITS[settings.scheme or (EULER_CROMER.name if "step" in settings.model_fields_set else "dop853")]
+    return TRAITS[settings.scheme or ("euler_cromer" if "step" in settings.model_fields_set else "dop853")]
 
 
 def scheme_of(settings: RunSettings) -> Scheme:
     """Return the scheme that the settings choose."""
-    chosen = traits(settings).name
-    return EULER_CROMER if chosen == EULER_CROMER.name else SCHEMES[chosen]
+    return SCHEMES[traits(settings).name]
 
 
 def solve(

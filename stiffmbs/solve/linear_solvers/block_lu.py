@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from random import Random  # that of NumPy takes longer to import
 from typing import Any, ClassVar, Final
 
 import numpy as np
@@ -14,7 +15,6 @@ from ...compile.machine.routines import Routine
 from ...sparse.block_updates import updates
 from ...sparse.blocks import Blocks, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order
-from ..any_direction import any_direction
 from ..ida.session import WhenNeeded
 from .linear_solver import COSTS, FACTOR_SIGNATURE, SOLVE_SIGNATURE, LinearSolver, Memory
 from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
@@ -83,7 +83,7 @@ class BlockLU(LinearSolver):
             "n": self.n, "parts": self.parts, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
             **{name: held_once(np.asarray(part, dtype=np.int64)) for name, part in lists.items()},
             **{name: held_once(part) for name, part in updates(blocks).items()},
-            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": any_direction(self.n, SEED),
+            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": _any_direction(self.n, SEED),
         }  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
@@ -105,3 +105,9 @@ class BlockLU(LinearSolver):
         needed = WhenNeeded(cells, {"setup_pivots": SparseLU.factor, "solve_pivots": SparseLU.solve})
         cells["compile_pivots"] = needed.address
         return Memory(content, arrays, with_pivots.factors, cells, needed)
+
+
+def _any_direction(n: int, seed: int) -> np.ndarray:
+    """Return n numbers of random signs and of sizes from 0.5 to 1, the same for each seed."""
+    random = Random(seed)
+    return np.array([random.choice((-1.0, 1.0)) * random.uniform(0.5, 1.0) for _ in range(n)])

@@ -68,7 +68,7 @@ def of_straight_braking(known: Known, test: StraightBraking, runs: list[Run]) ->
     run = runs[0]
     part = run["time"] >= 1.0
     time, speed = run["time"][part], run["vehicle.speed"][part]
-    slip = min(float(np.min(run[f"{tyre}.slip"][part][_moving(speed)])) for tyre in known.car.tyres.values())
+    slip = min(float(np.min(run[f"{wheel.tyre}.slip"][part][_moving(speed)])) for wheel in known.car.wheels.values())
     distance = np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(time))
     return {
         "mean fully developed deceleration": (mean_deceleration(time, speed), "m/s^2"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from ...elements.spatial.forces.wheel_torque import WheelTorque
 from ...elements.spatial.marker import Point
 from ...elements.spatial.orientation import IDENTITY, conjugate, rotated
-from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.files.effective import chosen_options
 from ...model.files.expand import unshared
@@ -20,9 +19,9 @@ from ...model.parts.placing import placed_in_use
 from ...model.read_scene import made_scene
 from ...model.scene import Scene
 from ...model.vehicle import Vehicle
+from ...model.wheels import Wheel, angular_of_joints, centre_of_mass, corners, wheels_of
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import Content, read_yaml
-from ..suspension.axle import centre_of_mass
 
 DRIVER = "handling_driver"
 STEER = "handling_steer"
@@ -42,10 +41,7 @@ class Car:
 
     body: str  # sprung body
     vehicle: Vehicle | None  # section ``vehicle`` of that body
-    # tyres, wheels, uprights: by corner: ``front_left`` ... ``rear_right``
-    tyres: Mapping[str, str]
-    wheels: Mapping[str, str]
-    uprights: Mapping[str, str]
+    wheels: Mapping[str, Wheel]  # by corner: ``front_left`` ... ``rear_right``
     # bodies that spin with the speed of the car: wheels, shafts on which a `wheel_torque` acts, and those of the
     # scene's own start
     rolling: tuple[str, ...]
@@ -65,7 +61,7 @@ class Car:
     # halfway between left and right wheels, in the axes of the sprung body, m
     reference: Point
     frame: Point
-    stated: bool  # True if the section `vehicle` has a `point`
+    point_given: bool  # True if the section `vehicle` has a `point`
 
     def behind(self, place: Point) -> float:
         """Return the distance from a place back to the rear axle, m."""
@@ -89,36 +85,29 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         raise InputError(
             f"found no body '{body}'{near}, expected the sprung body: vehicle: {{body: NAME}}, or --body NAME"
         )
-    tyres = [name for name, force in scene.forces.items() if isinstance(force, Tyre)]
-    if len(tyres) != 4:
-        raise InputError(f"found {len(tyres)} tyres ({', '.join(tyres) or 'none'}), expected the 4 of a car")
-    places = {name: np.array(scene.point(scene.forces[name].i)) for name in tyres}
-    _check_place(scene, body, places)
-    by_x = sorted(tyres, key=lambda name: -places[name][0])
-    corners: dict[str, str] = {}
-    for axle, pair in (("front", by_x[:2]), ("rear", by_x[2:])):
-        left, right = sorted(pair, key=lambda name: -places[name][1])
-        corners |= {f"{axle}_left": left, f"{axle}_right": right}
-    wheels = {corner: scene.forces[name].i.body for corner, name in corners.items()}
-    at = {corner: places[name] for corner, name in corners.items()}
-    middle, centre, own = np.mean([*places.values()], axis=0), centre_of_mass(scene, body), scene.bodies[body]
+    wheels = corners(wheels_of(scene))
+    for wheel in wheels.values():
+        if not wheel.hubs:
+            raise InputError(f"found no revolute joint of the wheel '{wheel.body}', expected one as its bearing")
+    _check_place(body, [*wheels.values()])
+    at = {corner: wheel.centre for corner, wheel in wheels.items()}
+    middle, centre, own = np.mean([*at.values()], axis=0), centre_of_mass(scene, body), scene.bodies[body]
 
     def on_body(place: np.ndarray) -> Point:
         """Return a place in ground axes as a point in the axes of the sprung body."""
         return _point(rotated(conjugate(own.orientation), place - np.array(own.position)))
 
-    stated = vehicle is not None and "point" in vehicle.model_fields_set
-    reference = vehicle.point if vehicle is not None and stated else on_body(centre)
+    point_given = vehicle is not None and "point" in vehicle.model_fields_set
+    reference = vehicle.point if vehicle is not None and point_given else on_body(centre)
     measured = np.array(own.position) + rotated(own.orientation, reference)
     joint = _steering(scene, steering)
     return Car(
-        body, vehicle, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
-        _rolling(scene, wheels.values()), joint, tuple(dict.fromkeys([joint, *_steering_joints(scene)])),
-        scene.joints[joint].kind == "revolute",
+        body, vehicle, wheels, _rolling(scene, (wheel.body for wheel in wheels.values())), joint,
+        tuple(dict.fromkeys([joint, *_steering_joints(scene)])), angular_of_joints(scene)[joint],
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
         float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
         float(middle[2]), _point(middle), _point(centre), _point(measured), reference,
-        on_body(np.array([centre[0], middle[1], centre[2]])), stated,
+        on_body(np.array([centre[0], middle[1], centre[2]])), point_given,
     )  # fmt: skip
 
 
@@ -127,11 +116,12 @@ def _point(place: np.ndarray) -> Point:
     return x, y, z
 
 
-def _check_place(scene: Scene, body: str, places: Mapping[str, np.ndarray]) -> None:
+def _check_place(body: str, wheels: Sequence[Wheel]) -> None:
     """Refuse a car that does not stand where courses begin: at the origin, with its heading along x."""
-    left = np.mean([scene.initial_marker(scene.forces[name].i).axes[:, 1] for name in places], axis=0)
-    x, y, _ = np.mean([*places.values()], axis=0)
-    length = np.ptp([*places.values()], axis=0).max()
+    places = [wheel.centre for wheel in wheels]
+    left = np.mean([wheel.axis for wheel in wheels], axis=0)
+    x, y, _ = np.mean(places, axis=0)
+    length = np.ptp(places, axis=0).max()
     heading = float(np.arctan2(-left[0], left[1])) + 0.0
     if abs(heading) > MISPLACED or abs(y) > MISPLACED * length or abs(x) > length:
         raise InputError(
@@ -140,34 +130,22 @@ def _check_place(scene: Scene, body: str, places: Mapping[str, np.ndarray]) -> N
         )
 
 
-def _upright(scene: Scene, wheel: str) -> str:
-    """Return the body on which a wheel rotates."""
-    for joint in scene.joints.values():
-        if joint.kind == "revolute" and wheel in (joint.i.body, joint.j.body):
-            return joint.j.body if joint.i.body == wheel else joint.i.body  # type: ignore[no-any-return]
-    raise InputError(f"found no revolute joint of the wheel '{wheel}', expected one as its bearing")
-
-
 def _rolling(scene: Scene, wheels: Iterable[str]) -> tuple[str, ...]:
     """Return wheels, shafts of a driveline and the scene's own rolling bodies, each once."""
     shafts = (force.i.body for force in scene.forces.values() if isinstance(force, WheelTorque))
     return tuple(dict.fromkeys([*wheels, *shafts, *getattr(scene.start, "rolling", ())]))
 
 
-def _sliding_or_turning(scene: Scene) -> list[str]:
-    return [name for name, joint in scene.joints.items() if joint.kind in ("prismatic", "revolute")]
-
-
 def _steering_joints(scene: Scene) -> Iterator[str]:
     """Yield the steering wheel and the rack by their names, if a scene has one of each name only."""
     for last in STEERING_JOINTS:
-        found = [name for name in _sliding_or_turning(scene) if name.rpartition(".")[2] == last]
+        found = [name for name in angular_of_joints(scene) if name.rpartition(".")[2] == last]
         if len(found) == 1:
             yield found[0]
 
 
 def _steering(scene: Scene, given: str | None) -> str:
-    known = _sliding_or_turning(scene)
+    known = angular_of_joints(scene)
     if given is not None:
         if given not in known:
             near = did_you_mean(given, known)
@@ -293,8 +271,8 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
         formulas = content.get("variables") or {}
         content["variables"] = {name: _renamed(formula, own["name"]) for name, formula in formulas.items()}
     mounts = {
-        **(own.get("mounts") or {}), **car.wheels,
-        **{f"{corner}_upright": upright for corner, upright in car.uprights.items()},
+        **(own.get("mounts") or {}), **{corner: wheel.body for corner, wheel in car.wheels.items()},
+        **{f"{corner}_upright": wheel.carrier for corner, wheel in car.wheels.items()},
     }  # fmt: skip
     parameters = {
         **{name: x for name, x in (own.get("parameters") or {}).items() if name not in OF_ANOTHER_MANOEUVRE},

@@ -50,7 +50,7 @@ def of_ride(known: Known, test: Ride, runs: list[Run]) -> Metrics:
     step = float(run["time"][1] - run["time"][0])
     x, y = (weighted_rms(run[f"vehicle.{axis}"][part], step, "Wd") for axis in ("ax", "ay"))
     z = weighted_rms(run["vehicle.az"][part], step, "Wk")
-    loads = [run[f"{tyre}.load"][part] for tyre in known.car.tyres.values()]
+    loads = [run[f"{wheel.tyre}.load"][part] for wheel in known.car.wheels.values()]
     return {
         "weighted acceleration x (Wd)": (x, "m/s^2"),
         "weighted acceleration y (Wd)": (y, "m/s^2"),

@@ -100,7 +100,7 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     gradient = found["understeer gradient"][0] / 1e3
     if gradient > 0:
         found["characteristic speed"] = float(np.sqrt(known.car.wheelbase / gradient)), "m/s"
-    inner = np.stack([run[f"{known.car.tyres[f'{axle}_left']}.load"] for axle in ("front", "rear")], axis=1)
+    inner = np.stack([run[f"{known.car.wheels[f'{axle}_left'].tyre}.load"] for axle in ("front", "rear")], axis=1)
     return found | {
         "largest lateral acceleration": (float(np.max(ay)), "m/s^2"),
         "rollover threshold": (rollover_threshold(ay, inner), "m/s^2"),

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...analyses.job import Runnable, data_of
 from ...errors import InputError
-from ...model.files.other_forces import OtherForces
+from ...model.files.changed_forces import ChangedForces
 from ...model.files.written_scene import WrittenScene
 from ...model.read_scene import read_changed
 from ...model.scene import Scene
@@ -32,7 +32,7 @@ class Scenes:
 
     def __init__(self, written: WrittenScene, unchanged: Unchanged | None = None) -> None:
         self._written, self._unchanged = written, unchanged or Unchanged()
-        self._other_forces: dict[tuple[str, ...], OtherForces] = {}
+        self._changed_forces: dict[tuple[str, ...], ChangedForces] = {}
         as_read = self._unchanged.scene
         self.known = as_read if as_read and as_read.written is written else read_changed(written, (), self._unchanged)
 
@@ -52,9 +52,9 @@ class Scenes:
         """Return the scene with other values. Raises InputError if a value is invalid."""
         names, values = [path for path, _ in changes], [value for _, value in changes]
         if names and self._unchanged.scene is self.known:
-            if tuple(names) not in self._other_forces:
-                self._other_forces[tuple(names)] = OtherForces(self._written, names, self._unchanged)
-            found = self._other_forces[tuple(names)].scene(values)
+            if tuple(names) not in self._changed_forces:
+                self._changed_forces[tuple(names)] = ChangedForces(self._written, names, self._unchanged)
+            found = self._changed_forces[tuple(names)].scene(values)
             if found is not None:
                 return found
         return read_changed(self._written, changes, self._unchanged)

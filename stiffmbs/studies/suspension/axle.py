@@ -1,9 +1,9 @@
-"""Bodies and wheels of an axle: their names in shipped parts, or the tyres of any scene."""
+"""Axle on the rig: its wheels by the names of shipped parts or by the tyres of any scene, and the body to clamp."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
 
@@ -11,43 +11,29 @@ import numpy as np
 
 from ...elements.element import Element
 from ...elements.joints.drive import Drive
-from ...elements.spatial.marker import Marker
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.model_data import ModelData
+from ...model.wheels import (
+    Wheel,
+    angular_of_joints,
+    axle_at,
+    bodies_at,
+    connected,
+    marked_wheel,
+    side_of,
+    wheel_of,
+    wheels_of,
+)
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.formula.formula import Formula
-from ...reading.marker import GROUND, MarkerReference
+from ...reading.marker import GROUND
 
 
 def bodies_of(scene: ModelData, body: str, carriers: Sequence[str]) -> set[str]:
     """Return the bodies connected to the carriers of the wheels other than through the clamped body, and that body."""
     elements = (each for each in (*scene.joints.values(), *scene.forces.values()) if not depends_on_more(each))
-    return grown(carriers, elements, {body, GROUND}) | ({body} - {GROUND})
-
-
-def centre_of_mass(scene: ModelData, body: str) -> np.ndarray:
-    """Return the centre of mass of a described vehicle, m: of the bodies that joints and forces connect, except by ground."""
-    found = grown([body], (*scene.joints.values(), *scene.forces.values()), {GROUND})
-    bodies = [each for name, each in scene.bodies.items() if name in found]
-    masses, places = np.array([each.mass for each in bodies]), np.array([each.coordinates()[:3] for each in bodies])
-    return np.asarray(masses @ places / masses.sum())
-
-
-def grown(bodies: Sequence[str], elements: Iterable[Element], without: set[str]) -> set[str]:
-    """Return bodies with all those that elements connect to them, except through the bodies `without`."""
-    ends = [set(bodies_at(each)) - without for each in elements]
-    found, larger = set[str](), set(bodies)
-    while larger != found:
-        found = larger
-        larger = found.union(*(each for each in ends if each & found))
-    return found
-
-
-def bodies_at(element: Element) -> Iterator[str]:
-    """Yield the bodies that an element names."""
-    yield from (marker.body for _, marker in element.parts(MarkerReference))
-    yield from (marker.body for _, marker in element.markers())
+    return connected(carriers, elements, {body, GROUND}) | ({body} - {GROUND})
 
 
 def depends_on_more(element: Element) -> bool:
@@ -63,32 +49,10 @@ def stays(element: Element, bodies: frozenset[str]) -> bool:
 
 
 SIDES = ("left", "right")
-STEERING = ("guide", "prismatic"), ("steering", "revolute")
-"""Names and kinds of the joints that steer unless one is named."""
+STEERING = {"guide": False, "steering": True}
+"""Last names of the joints that steer unless one is named; True if they rotate."""
 AXIS_ALONG_Y = 0.7
 """Smallest component along y of a wheel's axis as described; x is forward on the rig (ISO 8855)."""
-SAME_AXLE = 0.3
-"""Largest distance along x of the wheels of one axle, m."""
-ON_MIDDLE_PLANE = 1e-6
-"""Largest distance from the middle plane of a wheel that is on neither side, m."""
-
-
-@dataclass(frozen=True)
-class Wheel:
-    """Wheel of an axle on the body that carries its bearing."""
-
-    side: str  # ``left``, ``right``, or ``wheel`` for the only wheel of a motorcycle's axle
-    suspension: str  # prefix of the names of the suspension's elements; empty if they have none
-    carrier: str  # body on which the wheel rotates
-    centre: np.ndarray  # shape (3,): centre of the wheel as described, ground axes, m
-    axis: np.ndarray  # shape (3,): unit vector along its axis, to the left
-    contact: np.ndarray  # shape (3,): centre of its contact with the road, m
-    body: str | None = None  # wheel body, if it is known
-
-    @property
-    def sign(self) -> float:
-        """1 on the left, -1 on the right: outwards is this times y."""
-        return -1.0 if self.side == "right" else 1.0
 
 
 @dataclass(frozen=True)
@@ -99,6 +63,7 @@ class Axle:
     wheels: tuple[Wheel, ...]  # one or two, left first
     body: str  # body that carries them; ground if they stand on it
     steering: str | None = None  # prismatic or revolute joint whose travel steers
+    angular: bool = False  # True if that joint rotates
     bodies: frozenset[str] = frozenset()  # bodies of the suspensions, with `body`
 
     @property
@@ -134,7 +99,7 @@ def axle_of(
     if radius is not None and not (isinstance(radius, Real) and 0 < radius < np.inf):
         raise InputError(f"radius: found {radius!r}, expected a length above zero, m")
     if wheels:
-        found = tuple(_of_body(model, each, radius) for each in wheels)
+        found = tuple(_on_hub(wheel_of(model, each), radius) for each in wheels)
     else:
         found = _named(model, name, start) or _with_tyres(model, name, radius)
     _check(found, name)
@@ -142,9 +107,10 @@ def axle_of(
     if body != GROUND and body not in model.bodies:
         near = did_you_mean(body, model.bodies)
         raise InputError(f"found no body '{body}'{near} to clamp, expected one of {', '.join(model.bodies)}")
-    axle = Axle(name, tuple(found), body)
+    axle = Axle(name, tuple(sorted(found, key=lambda wheel: wheel.side == "right")), body)
     axle = replace(axle, bodies=frozenset(bodies_of(model, body, [wheel.carrier for wheel in found])))
-    return replace(axle, steering=_steering(model, steering, axle.bodies))
+    joint = _steering(model, steering, axle.bodies)
+    return replace(axle, steering=joint, angular=joint is not None and angular_of_joints(model)[joint])
 
 
 def _named(model: ModelData, name: str, start: str) -> tuple[Wheel, ...]:
@@ -153,91 +119,49 @@ def _named(model: ModelData, name: str, start: str) -> tuple[Wheel, ...]:
     for side in SIDES:
         suspension = f"{start}{side}"
         if f"{suspension}.upright" in model.bodies:
-            found.append(_marked(model, side, suspension, f"{suspension}.upright", ""))
+            wheel = marked_wheel(model, f"{suspension}.upright")
         elif f"{start}axle" in model.bodies:
-            found.append(_marked(model, side, suspension, f"{start}axle", f"{side}_"))
+            wheel = marked_wheel(model, f"{start}axle", f"{side}_")
+        else:
+            continue
+        found.append(replace(wheel, side=side, suspension=suspension))
     if not found and f"{start}upright" in model.bodies:
-        found.append(_marked(model, "wheel", name, f"{start}upright", ""))
-    if len(found) == 1 and found[0].side in SIDES:
-        found = [replace(found[0], side=_side(found[0].centre))]
-    return tuple(found)
-
-
-def _marked(model: ModelData, side: str, suspension: str, carrier: str, prefix: str) -> Wheel:
-    for name in ("spindle", "patch"):
-        if f"{prefix}{name}" not in model.bodies[carrier].markers:
-            raise InputError(f"bodies.{carrier}: found no marker '{prefix}{name}', expected it where the wheel is held")
-    spindle = model.initial_marker(Marker(body=carrier, marker=f"{prefix}spindle"))
-    patch = model.point(Marker(body=carrier, marker=f"{prefix}patch"))
-    return Wheel(side, suspension, carrier, np.array(spindle.point), spindle.axes[:, 1], np.array(patch))
+        return (replace(marked_wheel(model, f"{start}upright"), side="wheel", suspension=name),)
+    return tuple(found) if len(found) != 1 else (replace(found[0], side=side_of(found[0].centre)),)
 
 
 def _with_tyres(model: ModelData, name: str, radius: float | None) -> tuple[Wheel, ...]:
-    """Return the wheels of an axle by the tyres of the scene."""
-    tyres = {key: force for key, force in model.forces.items() if isinstance(force, Tyre)}
-    bodies = {tyre.i.body: model.point(tyre.i)[0] for key, tyre in tyres.items()}
-    if not bodies:
+    """Return the wheels of an axle by the tyres of the scene, each body once."""
+    wheels = [wheel_of(model, body) for body in dict.fromkeys(wheel.body for wheel in wheels_of(model))]
+    if not wheels:
         endings = (".left.upright", ".right.upright")
         known = sorted({each.rpartition(".")[0] for each in model.bodies if each.endswith(endings)})
         start = f"{name}." if name else ""
         raise InputError(
             f"found no body '{start}left.upright', expected a suspension with one: {', '.join(known) or 'none in the scene'}"
         )
-    ends = {"front": max(bodies.values()), "rear": min(bodies.values())}
     chosen = [
-        tyre.i.body
-        for key, tyre in tyres.items()
-        if (f"{key}.".startswith(f"{name}.") or f"{tyre.i.body}.".startswith(f"{name}.")) and name
+        wheel for wheel in wheels if name and any(f"{own}.".startswith(f"{name}.") for own in (wheel.tyre, wheel.body))
     ]
-    if not chosen and name in ends:
-        chosen = [body for body, x in bodies.items() if abs(x - ends[name]) < SAME_AXLE]
-    if not 1 <= len(set(chosen)) <= 2:
+    if not chosen and name in ("front", "rear"):
+        chosen = axle_at(wheels, name)
+    if not 1 <= len(chosen) <= 2:
         raise InputError(
-            f"axle '{name}': found {len(set(chosen))} wheels with tyres, expected one or two: name the bodies of the wheels "
-            f"(of {', '.join(bodies)})"
+            f"axle '{name}': found {len(chosen)} wheels with tyres, expected one or two: name the bodies of the wheels "
+            f"(of {', '.join(wheel.body for wheel in wheels)})"
         )
-    return tuple(_of_body(model, body, radius) for body in dict.fromkeys(chosen))
+    return tuple(_on_hub(wheel, radius) for wheel in chosen)
 
 
-def _of_body(model: ModelData, body: str, radius: float | None) -> Wheel:
-    """Return the wheel that is a body with a hub."""
-    if body not in model.bodies:
-        raise InputError(f"found no body '{body}'{did_you_mean(body, model.bodies)}, expected the body of a wheel")
-    hubs = {
-        name: joint
-        for name, joint in model.joints.items()
-        if joint.kind == "revolute" and body in (joint.i.body, joint.j.body)  # type: ignore[attr-defined]
-    }
-    if len(hubs) != 1:
+def _on_hub(wheel: Wheel, radius: float | None) -> Wheel:
+    """Return a wheel with its axis to the left and a given radius; raise an InputError without a radius or a single carrier."""
+    if len(wheel.carriers) != 1:
         raise InputError(
-            f"bodies.{body}: found {len(hubs)} revolute joints ({', '.join(hubs) or 'none'}), expected one, the hub of the wheel"
+            f"bodies.{wheel.body}: found {len(wheel.hubs)} revolute joints ({', '.join(wheel.hubs) or 'none'}), "
+            "expected one, the hub of the wheel"
         )
-    ((_, hub),) = hubs.items()
-    own, carrier = (hub.i, hub.j) if hub.i.body == body else (hub.j, hub.i)  # type: ignore[attr-defined]
-    tyre = next((each for each in model.forces.values() if isinstance(each, Tyre) and each.i.body == body), None)
-    centre = np.array(model.point(tyre.i if tyre is not None else own))
-    axis = model.initial_marker(own).axes[:, 2]
-    axis = axis if axis[1] >= 0 else -axis
-    distance = radius or (None if tyre is None else _radius(tyre))
-    if distance is None:
-        raise InputError(f"bodies.{body}: found no tyre with a radius, expected the radius of the wheel as an option")
-    up = np.array([0.0, 0.0, 1.0]) - axis[2] * axis
-    contact = centre - distance * up / np.linalg.norm(up)
-    return Wheel(_side(centre), "", carrier.body, centre, axis, contact, body)
-
-
-def _radius(tyre: Tyre) -> float | None:
-    """Return the unloaded radius of a tyre, m, from its field or its property file."""
-    properties = getattr(tyre, "properties", None)
-    if properties is not None:
-        found = dict(properties.coefficients).get("UNLOADED_RADIUS")
-    else:
-        found = getattr(tyre, "radius", None)
-    return None if found is None else float(found)
-
-
-def _side(centre: np.ndarray) -> str:
-    return "wheel" if abs(centre[1]) < ON_MIDDLE_PLANE else "left" if centre[1] > 0 else "right"
+    found = replace(wheel, axis=wheel.axis if wheel.axis[1] >= 0 else -wheel.axis, radius=radius or wheel.radius)
+    return replace(found, patch=found.contact)
 
 
 def _check(wheels: Sequence[Wheel], name: str) -> None:
@@ -306,15 +230,14 @@ def _carrying(model: ModelData, start: str, wheels: Sequence[Wheel]) -> str:
 
 
 def _steering(model: ModelData, given: str | None, bodies: frozenset[str]) -> str | None:
-    slides = [name for name, joint in model.joints.items() if joint.kind in ("prismatic", "revolute")]
-    if given is not None and given not in slides:
-        raise InputError(f"found no prismatic or revolute joint '{given}'{instead_of(given, slides)}")
+    known = angular_of_joints(model)
+    if given is not None and given not in known:
+        raise InputError(f"found no prismatic or revolute joint '{given}'{instead_of(given, known)}")
     if given is not None and not set(bodies_at(model.joints[given])) & (bodies - {GROUND}):
         raise InputError(f"steering: found the joint '{given}' on other bodies, expected one that steers the axle")
-    guides = [
+    named = [
         name
-        for name in slides
-        if (name.rpartition(".")[2], model.joints[name].kind) in STEERING
-        and set(bodies_at(model.joints[name])) <= bodies | {GROUND}
+        for name, angular in known.items()
+        if STEERING.get(name.rpartition(".")[2]) is angular and set(bodies_at(model.joints[name])) <= bodies | {GROUND}
     ]
-    return given or (guides[0] if len(guides) == 1 else None)
+    return given or (named[0] if len(named) == 1 else None)

@@ -16,7 +16,8 @@ import numpy as np
 from ...dynamics.dynamics import Dynamics
 from ...elements.forces.springs import AngleSpring, LineSpring, Spring
 from ...model.model_data import ModelData
-from .axle import Axle, Wheel
+from ...model.wheels import Wheel
+from .axle import Axle
 from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad
 from .tangent import SteeringAxis, Tangent, Twist, steering_axis, steering_motion
 from .vehicle import Vehicle
@@ -63,8 +64,7 @@ def setup_of(model: ModelData, axle: Axle, vehicle: Vehicle) -> Setup:
     }
     lines = {name: force for name, force in springs.items() if isinstance(force, LineSpring)}
     of_wheel = {wheel.side: springs_of(model, axle, wheel, lines) for wheel in axle.wheels}
-    angular = axle.steering in model.joints and model.joints[axle.steering].kind == "revolute"
-    return Setup(model, axle, vehicle, springs, of_wheel, angular)
+    return Setup(model, axle, vehicle, springs, of_wheel, axle.angular and axle.steering in model.joints)
 
 
 def springs_of(model: ModelData, axle: Axle, wheel: Wheel, lines: dict[str, LineSpring]) -> dict[str, LineSpring]:  # type: ignore[type-arg]

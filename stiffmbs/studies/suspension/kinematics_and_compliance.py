@@ -269,8 +269,7 @@ def kinematics_and_compliance(
     if data.dimensions != 3:
         raise InputError("found a scene in the plane, expected one in space")
     found = axle_of(data, axle, body, steering, wheels, radius)
-    angular = found.steering is not None and data.joints[found.steering].kind == "revolute"
-    cases = [_case(case, angular) for case in CASES if _applies(case, found)]
+    cases = [_case(case, found.angular) for case in CASES if _applies(case, found)]
     sizes = {case.name: amplitudes.get(case.name, case.amplitude) for case in cases}
     cases = [case for case in cases if sizes[case.name]]
     half = points // 2

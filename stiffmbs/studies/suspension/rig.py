@@ -20,9 +20,10 @@ from ...elements.spatial.marker import Marker, Placement
 from ...elements.spatial.orientation import from_matrix
 from ...model.model_data import ModelData
 from ...model.spatial_model import Model
+from ...model.wheels import Wheel
 from ...reading.marker import GROUND
 from ...reading.table import Table
-from .axle import Axle, Wheel, stays
+from .axle import Axle, stays
 
 UP = np.array([0.0, 0.0, 1.0])
 

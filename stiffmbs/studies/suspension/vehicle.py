@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...elements.spatial.marker import Marker
-from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.model_data import ModelData
+from ...model.wheels import Wheel, axle_at, centre_of_mass, marked_or_tyred
 from ...reading.marker import GROUND
-from .axle import SAME_AXLE, Axle, centre_of_mass
+from .axle import Axle
 
 BRAKE_SHARES = {True: 0.6, False: 0.4}
 """Assumed share of the braking force at a front and at a rear axle; typical of passenger cars."""
@@ -68,8 +67,9 @@ class VehicleOptions:
 def vehicle_of(model: ModelData, axle: Axle, given: VehicleOptions) -> Vehicle:
     """Return the numbers of the vehicle: as given, else from the scene, else assumptions."""
     own = float(np.mean([wheel.contact[0] for wheel in axle.wheels]))
-    others = [x for x in _contacts(model) if abs(x - own) > SAME_AXLE]
-    one = bool(others) and max(others) - min(others) < SAME_AXLE
+    wheels = [wheel for wheel in marked_or_tyred(model) if not _is_of(wheel, axle)]
+    others = [float((wheel.centre if wheel.patch is None else wheel.patch)[0]) for wheel in wheels]
+    one = bool(wheels) and all(any(map(wheel.on_axle_of, axle_at(wheels, "front"))) for wheel in wheels)
     front = bool(own > np.mean(others)) if others and (own > max(others) or own < min(others)) else None
     assumed = []
     if front is None and not others and (front := _by_name(axle)) is not None:
@@ -102,12 +102,10 @@ def _by_name(axle: Axle) -> bool | None:
     return True if axle.steering is not None else None
 
 
-def _contacts(model: ModelData) -> list[float]:
-    """Return the positions along x of all wheels of a scene."""
-    found = [model.point(force.i)[0] for force in model.forces.values() if isinstance(force, Tyre)]
-    for name, body in model.bodies.items():
-        found += [model.point(Marker(body=name, marker=each))[0] for each in body.markers if each.endswith("patch")]
-    return found
+def _is_of(wheel: Wheel, axle: Axle) -> bool:
+    """Return True for a wheel of an axle, or another wheel next to it."""
+    carriers = [own.carrier for own in axle.wheels]
+    return wheel.carrier in carriers or any(wheel.on_axle_of(own) for own in axle.wheels)
 
 
 def _height(model: ModelData, axle: Axle) -> float | None:

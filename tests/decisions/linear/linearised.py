@@ -8,7 +8,7 @@ from unittest.mock import patch
 import numpy as np
 
 from stiffmbs.analyses import far_away, settled, steady
-from stiffmbs.analyses.linearised import modes, sides, transfer
+from stiffmbs.analyses.linearised import kink, modes, transfer
 from stiffmbs.errors import SolverError
 from tests.decisions.common import BELOW, Reached, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -62,7 +62,7 @@ class linearised:
     """Context of the search for a breakpoint of one force, in which `side` returns the equations after a move."""
 
     def __init__(self, side):
-        self._patch = patch.multiple(sides, _side=side, _generic_move=lambda *_: np.ones(1))
+        self._patch = patch.multiple(kink, _side=side, _generic_move=lambda *_: np.ones(1))
 
     def __enter__(self):
         self._patch.start()
@@ -70,7 +70,7 @@ class linearised:
             names_of=lambda *_: ["a.vx"], n_u=1, of_body=Record(velocities=()), states=[], without_rate=np.zeros(0, dtype=bool)
         )  # fmt: skip
         found = Record(dynamics=Record(system=system), t=0.0)
-        return lambda: sides._breakpoint(found, Record(), Record(), np.ones(1), sides.MOVES)
+        return lambda: kink._breakpoint(found, Record(), Record(), np.ones(1), kink.MOVES)
 
     def __exit__(self, *_):
         self._patch.stop()
@@ -87,7 +87,7 @@ def largest_jump(parts, force):
             )
 
         with (
-            patch.multiple(sides, _moving=lambda *_: ["a.vx"], _largest=lambda *_: reach(0.0)),
+            patch.multiple(kink, _moving=lambda *_: ["a.vx"], _largest=lambda *_: reach(0.0)),
             linearised(side) as call,
         ):
             try:
@@ -99,9 +99,9 @@ def largest_jump(parts, force):
 
 
 def largest_curvature():
-    wide = sides.MOVES.narrow / sides.MOVES.wide
+    wide = kink.MOVES.narrow / kink.MOVES.wide
     return count_while(
-        lambda x: not sides.MOVES.break_between(np.ones(1), np.array([wide * (1.0 + 0.01 * x)]))[0], DOUBLES
+        lambda x: not kink.MOVES.break_between(np.ones(1), np.array([wide * (1.0 + 0.01 * x)]))[0], DOUBLES
     )
 
 
@@ -200,11 +200,11 @@ DECISIONS = {
     "analyses.far_away:BEYOND": lambda: farthest_equilibrium(far_away.beyond_its_size),
     "analyses.linearised.modes:AT_REST": largest_acceleration_at_rest,
     "analyses.linearised.modes:UNHURRIED": rate_of_a_shown_mode,
-    "analyses.linearised.sides:Moves.wide": lambda: moved_by(0),
-    "analyses.linearised.sides:Moves.narrow": lambda: moved_by(2),
-    "analyses.linearised.sides:Moves.steep": lambda: largest_jump(1.0, 0.0),
-    "analyses.linearised.sides:Moves.rounding": lambda: largest_jump(0.0, 1.0),
-    "analyses.linearised.sides:Moves.curved": largest_curvature,
+    "analyses.linearised.kink:Moves.wide": lambda: moved_by(0),
+    "analyses.linearised.kink:Moves.narrow": lambda: moved_by(2),
+    "analyses.linearised.kink:Moves.steep": lambda: largest_jump(1.0, 0.0),
+    "analyses.linearised.kink:Moves.rounding": lambda: largest_jump(0.0, 1.0),
+    "analyses.linearised.kink:Moves.curved": largest_curvature,
     "analyses.linearised.transfer:NO_RATE": largest_rate_of_an_input,
     "analyses.settled:MOST_FOR_EIGENVALUES": most_velocities_with_eigenvalues,
     "analyses.settled:BRANCH": move_to_a_branch,
@@ -221,9 +221,9 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.linearised.modes:AT_REST": 27,
-    "analyses.linearised.modes:UNHURRIED": 6.283185307179586, "analyses.linearised.sides:Moves.wide": 1e-06,
-    "analyses.linearised.sides:Moves.narrow": 1e-07, "analyses.linearised.sides:Moves.steep": 44,
-    "analyses.linearised.sides:Moves.rounding": 40, "analyses.linearised.sides:Moves.curved": 23,
+    "analyses.linearised.modes:UNHURRIED": 6.283185307179586, "analyses.linearised.kink:Moves.wide": 1e-06,
+    "analyses.linearised.kink:Moves.narrow": 1e-07, "analyses.linearised.kink:Moves.steep": 44,
+    "analyses.linearised.kink:Moves.rounding": 40, "analyses.linearised.kink:Moves.curved": 23,
     "analyses.linearised.transfer:NO_RATE": 27, "analyses.settled:MOST_FOR_EIGENVALUES": 16, "analyses.settled:BRANCH": 0.001,
     "analyses.settled:MOST_BRANCHES": 3, "analyses.settled:SAME_MOTION": 102, "analyses.settled:LARGE_PART": 4,
     "analyses.settled:GROWING": 80, "analyses.settled:ROUNDED": 133, "analyses.steady:MOTION_AHEAD": 0.001,

@@ -7,7 +7,7 @@ import numpy as np
 from stiffmbs.reading.table import Table
 from stiffmbs.solve.events import narrow_inputs
 from stiffmbs.solve.events.departures import Departure
-from stiffmbs.solve.events.native import bounds, from_zero, nearby, outside, sides, within_step
+from stiffmbs.solve.events.native import bounds, nearby, outside, sign_changes, signs_at_zero, within_step
 from tests.decisions.common import Record, never, nothing, searched
 from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
@@ -87,13 +87,13 @@ def time_past_an_event():
         "evaluate": lambda *_: np.zeros(1),
         "_passed": lambda s, m, t, ahead, *_: int(ahead >= 1e-3),
     }
-    with interpreted(sides, **replaced):
-        return sides.moved_past(s, m, 0.0, 1.0, 1, np.zeros(1), np.zeros(1))
+    with interpreted(sign_changes, **replaced):
+        return sign_changes.moved_past(s, m, 0.0, 1.0, 1, np.zeros(1), np.zeros(1))
 
 
 def signs_to_a_side():
     signs, seen, held = np.zeros(1), np.zeros(1), np.zeros(1)
-    return count_while(lambda _: from_zero.note_sides(signs, np.ones(1), seen, held, 1) > 0, range(100))
+    return count_while(lambda _: signs_at_zero.note_signs(signs, np.ones(1), seen, held, 1) > 0, range(100))
 
 
 def steepest_without_an_extremum():

@@ -9,7 +9,7 @@ import numpy as np
 from stiffmbs.solve import missing_rows, sampling
 from stiffmbs.solve.events import discontinuity, narrow_inputs
 from stiffmbs.solve.events.native import bounds
-from stiffmbs.solve.ida.native import ida_events, passage
+from stiffmbs.solve.ida.native import first_steps, ida_events
 from stiffmbs.solve.trajectory import Grid, History, Outcome, Trajectory
 from tests.decisions.common import Record, always, never, nothing, searched
 from tests.interpreted import interpreted
@@ -48,16 +48,16 @@ def longest_passage():
     """Return the passage, in quarter octaves of 1 us, up to which the first steps are limited in a run of 1 s."""
 
     def is_found(length):
-        with interpreted(passage, _another_side=lambda c, w, s, ahead, count: ahead >= length):
-            return passage._passage(Record(returned=0.0, repeat=0), searched(), None, 1.0, 1.0, 1) > 0.0
+        with interpreted(first_steps, _another_side=lambda c, w, s, ahead, count: ahead >= length):
+            return first_steps._passage(Record(returned=0.0, repeat=0), searched(), None, 1.0, 1.0, 1) > 0.0
 
     return count_while(is_found, 1e-6 * DOUBLES[:200])
 
 
 def bounded_passage(w, returned=0.0, repeat=0):
     c = Record(repeat=repeat, returned=returned, next_step_of=nothing, memory=0, next_size=0.0)
-    with interpreted(passage, _passage=lambda *_: 1.0, _matters=never):
-        passage.bound_passage(c, w, None, 1.0, 1.0)
+    with interpreted(first_steps, _passage=lambda *_: 1.0, _matters=never):
+        first_steps.bound_first_steps(c, w, None, 1.0, 1.0)
     return w
 
 

@@ -23,7 +23,7 @@ from stiffmbs.solve.explicit.native import (
     runge_kutta,
 )  # fmt: skip
 from stiffmbs.solve.explicit.native import start as explicit_start
-from stiffmbs.solve.explicit.rk4 import RK4
+from stiffmbs.solve.explicit.schemes import RK4
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Reached, Record, always, never, nothing, parameters, searched
 from tests.interpreted import interpreted

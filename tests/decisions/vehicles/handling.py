@@ -19,11 +19,9 @@ study = module("studies.handling.study")
 
 
 def largest_misplacement():
-    scene = Record(initial_marker=lambda _: Record(axes=np.eye(3)), forces={"a": Record(i=None), "b": Record(i=None)})
-
     def accepts(y):
-        places = {"a": np.array([0.0, y, 0.0]), "b": np.array([1.0, y, 0.0])}
-        return not refused(lambda: car._check_place(scene, "car", places))
+        wheels = [Record(centre=np.array([x, y, 0.0]), axis=np.array([0.0, 1.0, 0.0])) for x in (0.0, 1.0)]
+        return not refused(lambda: car._check_place("car", wheels))
 
     return count_while(lambda y: accepts(1e-4 * y), DOUBLES)
 

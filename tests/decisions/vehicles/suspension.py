@@ -20,18 +20,6 @@ def least_component_along_y():
     return count_while(accepts, 1.5 * BELOW)
 
 
-def largest_offset_on_an_axle():
-    """Return the offset along x, in quarter octaves of 0.01 m, of two wheels on an axle."""
-
-    def has_both(offset):
-        tyres = {name: Record(i=Record(body=name)) for name in ("a", "b")}
-        model = Record(forces=tyres, bodies={}, point=lambda i: [10.0 - offset * (i.body == "b")])
-        with patch.multiple(axle, Tyre=Record, _of_body=lambda *_: 1):
-            return len(axle._with_tyres(model, "front", None)) == 2
-
-    return count_while(lambda offset: has_both(0.01 * offset), DOUBLES[:40])
-
-
 def largest_angle_of_roll_paths():
     def meet(sine):
         hubs = [
@@ -109,10 +97,6 @@ def directions_of_an_ellipse():
 
 DECISIONS = {
     "studies.suspension.axle:AXIS_ALONG_Y": least_component_along_y,
-    "studies.suspension.axle:SAME_AXLE": largest_offset_on_an_axle,
-    "studies.suspension.axle:ON_MIDDLE_PLANE": lambda: count_while(
-        lambda y: axle._side(np.array([0.0, y, 0.0])) == "left", BELOW
-    ),
     "studies.suspension.characteristics:STRAIGHT": lambda: count_while(
         lambda angle: np.isfinite(characteristics._ackermann([angle, angle], 0.5, 2.0)["turning_radius"]), BELOW
     ),
@@ -131,8 +115,7 @@ DECISIONS = {
     "studies.tyre_curves:DIRECTIONS": directions_of_an_ellipse,
 }  # fmt: skip
 EXPECTED = {
-    "studies.suspension.axle:AXIS_ALONG_Y": 4, "studies.suspension.axle:SAME_AXLE": 20,
-    "studies.suspension.axle:ON_MIDDLE_PLANE": 80, "studies.suspension.characteristics:STRAIGHT": 26,
+    "studies.suspension.axle:AXIS_ALONG_Y": 4, "studies.suspension.characteristics:STRAIGHT": 26,
     "studies.suspension.characteristics:PARALLEL": 159, "studies.suspension.kinematics_and_compliance:STEER_ANGLE": 10.0,
     "studies.suspension.kinematics_and_compliance:NEARLY_STRAIGHT": 27, "studies.suspension.tangent:STILL": 119,
     "studies.suspension.tangent:LEVEL": 80, "studies.suspension.tangent:IDLE": 1e-12,

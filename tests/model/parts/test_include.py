@@ -11,7 +11,7 @@ import pytest
 import stiffmbs
 from stiffmbs.errors import InputError
 from stiffmbs.model.schema import scene_schema
-from stiffmbs.reading.files.names_of_files import PLACES
+from stiffmbs.reading.files.include import PLACES
 from tests.flexible_bodies.bars import mesh_of_bar
 
 ROOT = Path(__file__).parents[3]

@@ -8,10 +8,10 @@ import pytest
 import stiffmbs
 from stiffmbs.elements.tyres.names import COEFFICIENTS_6, ONE_SIDED
 from stiffmbs.errors import InputError
-from stiffmbs.model.mounted_tyres import _Wheel
 from stiffmbs.model.parts.hard_points import check_sides
 from stiffmbs.model.parts.spatial_frame import SpatialFrame
 from stiffmbs.model.scene import notes_of
+from stiffmbs.model.wheels import Wheel
 from stiffmbs.tyres import TyreProperties
 
 from ...conftest import EXAMPLE_SCENES
@@ -165,7 +165,7 @@ def test_wheels_are_on_one_axle_up_to_a_tenth_of_their_distance():
     def seen(offset, cosine):
         sine = (1 - cosine**2) ** 0.5
         wheels = ((0.0, 0.0, (0.0, 1.0, 0.0)), (offset, 1.0, (sine, cosine, 0.0)))
-        other, one = (_Wheel("w", None, np.array([x, y, 0.0]), np.array(axis)) for x, y, axis in wheels)
+        other, one = (Wheel(np.array([x, y, 0.0]), np.array(axis), "left") for x, y, axis in wheels)
         return one.to_the_left_of(other) > 0
 
     assert seen(0.07, 1.0) and not seen(0.14, 1.0)

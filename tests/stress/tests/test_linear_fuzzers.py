@@ -27,7 +27,7 @@ def test_a_wrong_sign_in_the_accelerations_is_found(monkeypatch):
         found = right(*state)
         return replace(found, acceleration_at_velocity=-found.acceleration_at_velocity)
 
-    monkeypatch.setattr("stiffmbs.analyses.linearised.sides.linearised", wrong)
+    monkeypatch.setattr("stiffmbs.analyses.linearised.kink.linearised", wrong)
     assert modes.trial(7).outcome is Outcome.WRONG
 
 

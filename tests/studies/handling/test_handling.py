@@ -155,7 +155,7 @@ def test_a_driveline_spins_with_the_wheels_and_is_driven_at_its_input():
     """Its input turns as its ratio times the wheels, and carries the driver's traction by its ratio and that of the axle."""
     scene = with_driveline({"drive": "driveline", "parameters": {"target": "V", "begins": -1, "ratio": 3.15}})
     car = car_of(scene)
-    assert car.rolling == (*car.wheels.values(), "driveline.main.input")
+    assert car.rolling == (*(wheel.body for wheel in car.wheels.values()), "driveline.main.input")
     tested = with_manoeuvre(scene, car, Manoeuvre(20.0, 1.0))
     rest = stiffmbs.equilibrium(tested).channels
     spins = [rest[f"rear.{side}.wheel.wy"] for side in ("left", "right")]

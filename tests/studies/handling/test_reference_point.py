@@ -81,10 +81,10 @@ def test_the_reference_point_is_the_centre_of_mass_of_all_bodies_of_the_car():
     assert car_of(scene).centre == pytest.approx(centre, abs=1e-12)
     scene = car_with_origin((0.3, 0.1, 0.2), vehicle={"body": "chassis", "point": [0.5, 0, -0.1]})
     car = car_of(scene)
-    assert car.stated
+    assert car.point_given
     assert car.reference == (0.5, 0, -0.1)
     assert car.measured == pytest.approx((0.8, 0.1, 0.65))
-    assert not car_of(car_with_origin((0.3, 0.1, 0.2), vehicle={"body": "chassis"})).stated
+    assert not car_of(car_with_origin((0.3, 0.1, 0.2), vehicle={"body": "chassis"})).point_given
 
 
 @pytest.mark.long

@@ -21,7 +21,7 @@ from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
+from stiffmbs.compile.machine.native.simd import add_products, plus_product, quad, spread, sum_of
 from stiffmbs.compile.machine.native.vectors import clear, cross
 from stiffmbs.elements.spatial.flexible.layout import (
     BODY,

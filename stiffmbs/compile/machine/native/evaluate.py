@@ -7,7 +7,7 @@ from math import cos, pi, sin
 
 from .access import call_kernel, compiled, floats, ints, shifted, state_view
 from .orientation import TURN_STRIDE, add_by_rotation, share_orientation
-from .quads import item_of, nearest_whole, plus_product, product_of, quad_of, spread
+from .simd import item_of, nearest_whole, plus_product, product_of, quad_of, spread
 from .tables import CALL
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH, EFFORT, EFFORT_TANGENT = range(8)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..translate.code import Code, constant
 from ..translate.values import Operand, Value, builtin
-from .quads import QUAD, fused, literal, loaded, plus, spread, sum_of, times, write
+from .simd import QUAD, fused, literal, loaded, plus, spread, sum_of, times, write
 
 COLUMNS = range(3)
 

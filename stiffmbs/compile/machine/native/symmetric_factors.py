@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..translate.code import Code, constant
 from ..translate.values import Operand, Value, builtin
-from .quads import QUAD, fused, literal, loaded, minus_product, plus, spread, spread_over, times, write
+from .simd import QUAD, fused, literal, loaded, minus_product, plus, spread, spread_over, times, write
 
 
 @builtin

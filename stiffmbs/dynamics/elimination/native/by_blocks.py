@@ -9,7 +9,7 @@ diagonal block by its factors and the right blocks U by V = L^-1 U; D^-1 V, the 
 
 from stiffmbs.compile.machine.native.access import compiled, row_of, shifted, view_of
 from stiffmbs.compile.machine.native.joint_rows import add_rows, take_rows
-from stiffmbs.compile.machine.native.quads import (
+from stiffmbs.compile.machine.native.simd import (
     add_products,
     by_case,
     plus_product,

@@ -6,7 +6,7 @@ Algorithms, 2008, ch. 7).
 """
 
 from stiffmbs.compile.machine.native.access import compiled, row_of, shifted, view_of
-from stiffmbs.compile.machine.native.quads import plus_product
+from stiffmbs.compile.machine.native.simd import plus_product
 from stiffmbs.dynamics.elimination.native.digits import keeps_digits
 from stiffmbs.dynamics.elimination.native.layouts import PIN_ELIMINATION, Pin, PinProduct
 from stiffmbs.dynamics.native.parameters import ELIMINATION

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ....model.wheels import coefficient, radius_of
 from .. import solids
 from ..draft import Draft, Piece, Site, Symbol, at_both, at_each, at_first, at_other
 from ..scene_graph import Line, Solid
@@ -92,25 +93,12 @@ PROFILE = np.array([[0.66, -0.5], [0.95, -0.5], [1.0, -0.3], [1.0, 0.3], [0.95, 
 """Cross section of a tyre: radius in radii, and place in widths."""
 
 
-def radius_of(tyre: object) -> float:
-    """Return the unloaded radius of a tyre, m; zero if its data have none."""
-    properties = getattr(tyre, "properties", None)
-    found = getattr(tyre, "radius", None) or _coefficient(properties, "UNLOADED_RADIUS")
-    return float(found or 0.0)
-
-
-def _coefficient(properties: object, name: str) -> float | None:
-    found = getattr(properties, "coefficients", properties)
-    value = found.get(name) if hasattr(found, "get") else getattr(found, name, None)
-    return float(value) if isinstance(value, float | int) else None
-
-
 def wheel(d: Draft, i: Site, _: Site) -> None:
     """A tyre on a rim with spokes, about the y axis of the marker."""
     radius = radius_of(d.element)
     if not radius:
         return
-    width = _coefficient(getattr(d.element, "properties", None), "WIDTH") or WIDTH * radius
+    width = coefficient(d.element, "WIDTH") or WIDTH * radius
     axes = axes_along(np.array([0.0, 1.0, 0.0]))
     site = i.with_axes(axes)
     d.put(site, "body", lathe(PROFILE * (radius, width), 32), color=TREAD)

@@ -8,9 +8,9 @@ from math import floor, isfinite, sqrt, tau
 
 from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.solve.events.native.from_zero import JUST_BEYOND
 from stiffmbs.solve.events.native.layouts import EVENT_SEARCH
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.signs_at_zero import JUST_BEYOND
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 
 LOOKED_AT, ALSO_AT = 1.0 / (1.0 + sqrt(2.0)), sqrt(3.0) - 1.0

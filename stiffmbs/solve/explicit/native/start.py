@@ -7,9 +7,9 @@ from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.events.native.bounds import event_search_view
-from stiffmbs.solve.events.native.from_zero import at_zero, find_sides, keep_sides
 from stiffmbs.solve.events.native.locate import note_values
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.signs_at_zero import at_zero, find_signs, keep_signs
 from stiffmbs.solve.events.native.values import switches
 from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
 from stiffmbs.solve.explicit.native.stages import add_trailing_rates, load_state, rates, scheme_view
@@ -59,7 +59,7 @@ def _leave_zeros(x, c, w, s, m):
     """
     zeros = at_zero(w.value_before, w.n_event_functions)
     first, most = max(x.shortest, INDISTINCT * abs(x.t)), SEARCH.least_difference * w.duration
-    ahead = find_sides(x, w, s, x.t, first, most, _go_ahead)
+    ahead = find_signs(x, w, s, x.t, first, most, _go_ahead)
     if at_zero(w.value_before, w.n_event_functions) == zeros:
         return
     k = shifted(x.k, c.stages * x.n)
@@ -67,7 +67,7 @@ def _leave_zeros(x, c, w, s, m):
     _go_ahead(x, s, ahead)
     found = rates(x, s, m, c.stages, x.t + ahead) == 0
     _go_ahead(x, s, ahead)
-    if not (found and keep_sides(w.value_before, switches(w, s, x.t + ahead), w.n_event_functions)):
+    if not (found and keep_signs(w.value_before, switches(w, s, x.t + ahead), w.n_event_functions)):
         copied(k, x.k, x.n)
 
 

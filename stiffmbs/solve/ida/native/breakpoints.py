@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.sides import by_velocities, crossed, moved_past, taken_back, until_changed
+from stiffmbs.solve.events.native.sign_changes import by_velocities, crossed, moved_past, taken_back, until_changed
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view

@@ -20,15 +20,15 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     time_of_difference,
 )
-from stiffmbs.solve.events.native.from_zero import find_sides
 from stiffmbs.solve.events.native.layouts import ALWAYS, EVENT, IN_THIS_STEP, NO_EVENT, PASSED_INTERVAL
 from stiffmbs.solve.events.native.locate import FAR, evaluate_near, go_on, located, note_rates, note_values
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
+from stiffmbs.solve.events.native.signs_at_zero import find_signs
 from stiffmbs.solve.events.native.values import switches, take_reactions, unwrapped
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
+from stiffmbs.solve.ida.native.first_steps import bound_first_steps, go_ahead, go_straight
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
 LARGEST_GROWTH: Final = 2.0
 """Largest ratio of successive steps of IDA (IDASetEtaMax, which is not called)."""
@@ -44,8 +44,8 @@ def look_at_start(toward, stop, ida):
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         note_values(w, s, t)
         note_rates(c, w, s, t, max(SEARCH.least_difference * way, time_of_difference(w, 0.0, t)), go_straight)
-        find_sides(c, w, s, t, max(EPSILON * way, INDISTINCT * abs(t)), SEARCH.difference * way, go_ahead)
-        bound_passage(c, w, s, toward, stop)
+        find_signs(c, w, s, t, max(EPSILON * way, INDISTINCT * abs(t)), SEARCH.difference * way, go_ahead)
+        bound_first_steps(c, w, s, toward, stop)
     return int32(OK)
 
 

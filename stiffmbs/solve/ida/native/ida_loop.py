@@ -5,7 +5,7 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.compile.machine.native.quads import plus_product, quad, spread, sum_of
+from stiffmbs.compile.machine.native.simd import plus_product, quad, spread, sum_of
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
 from stiffmbs.solve.events.native.layouts import EVENT, NO_EVENT

@@ -6,7 +6,7 @@ Oettli and Prager, Compatibility of approximate solution of linear equations, Nu
 """
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted
-from stiffmbs.compile.machine.native.quads import (
+from stiffmbs.compile.machine.native.simd import (
     plus_product,
     product_of,
     quad,

@@ -11,7 +11,7 @@ Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Ana
 """
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.compile.machine.native.quads import (
+from stiffmbs.compile.machine.native.simd import (
     add_pair_products,
     add_products,
     by_case,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,12 +11,15 @@ from ....analyses.job import Job, prepare
 from ....compile.inputs.of_time import expressions_of, given_to
 from ....compile.machine.image import Image, image_of
 from ....compile.machine.layout import Addressed
+from ....compile.machine.object_code import SHORT
+from ....compile.machine.routines import together
 from ....compile.reactions import reactions
 from ....dynamics.dynamics import OUTPUT_POINTS, Dynamics, OutputRows
 from ....dynamics.held_inputs import AffineNumber
 from ....dynamics.native.layouts import JUDGED
 from ....errors import InputError
 from ....model.files.written_scene import WrittenScene
+from ....model.read_scene import read_changed
 from ....model.scene import Scene
 from ....notes import Note, NoteKind, Severity
 from ....reading.did_you_mean import did_you_mean
@@ -29,17 +32,26 @@ from ....solve.explicit.native.parameters import CONTROL
 from ....solve.explicit.scheme import ADVANCE
 from ....solve.explicit.schemes import DOP853
 from ....solve.explicit.stable_step import rates_at
-from ....solve.explicit.state_space import CONSISTENT_RATES, EVENT_FUNCTIONS
 from ....solve.settings import changed, traits_of
 from ...case_solver import CaseSolver, Task, written_scene
 from ...input_numbers import TRIED, InputNumbers
 from ...simulation import OWN_INPUTS
-from .requests import with_requests
+
+CONSISTENT_RATES, EVENT_FUNCTIONS, VIOLATION = together(
+    "stiffmbs.solve.explicit.native.state_space",
+    SHORT,
+    consistent_rates="int64(float64, float64*, float64*, float64*, int64*)",
+    event_functions="void(float64, float64*, float64*, int64*, int64*)",
+    violation="float64(float64, float64*, int64*)",
+)
+
 
 ENTRIES: Mapping[str, Addressed] = {
     "ADVANCE": ADVANCE, "OUTPUT_POINTS": OUTPUT_POINTS, "CONSISTENT_RATES": CONSISTENT_RATES, "EVENT_FUNCTIONS": EVENT_FUNCTIONS,
 }  # fmt: skip
 """Routines that the C code of the FMU calls, by their names there."""
+OF_REQUEST = "of_request_{}"
+"""Name of the output of a request, by its number."""
 TOTAL = "energy.total"
 STIFF = NoteKind(
     "fmu-stiff",
@@ -134,7 +146,7 @@ def exported_model(scene: Scene, outputs: Sequence[str] = ()) -> ExportedModel:
     Raises InputError for what only an FMU with Python computes.
     """
     given = {name: float(value) for name, value in scene.inputs.items() if isinstance(value, float | int)}
-    written, of_requests = with_requests(scene, written_scene(scene), outputs or scene.outputs())
+    written, of_requests = _with_requests(scene, written_scene(scene), outputs or scene.outputs())
     solver = _solver(written, given)
     scene = solver.scene([*given.values()])
     job = prepare(scene, changed(scene.run, {"presolve": False}))
@@ -303,3 +315,26 @@ def _variables(dynamics: Dynamics) -> tuple[dict[int, str], dict[str, int], tupl
     states = np.setdiff1d(np.arange(system.n_q + system.n_u), system.algebraic_coordinates).tolist()
     found[TOTAL] = sum(widths)
     return {place: named.get(place, "") for place in states}, found, tuple(channels.keys() - found)
+
+
+def _with_requests(
+    scene: Scene, written: WrittenScene, outputs: Collection[str]
+) -> tuple[WrittenScene, dict[str, str]]:
+    """Return the source of a scene with a transfer function of 1 for each request among `outputs`, and its channel by request.
+
+    It is not possible for formulas of reactions, accelerations, energies or other requests, and for those of parts. A formula of time
+    bounds the steps, so that only those of outputs have one.
+    """
+    section, found = written.content.get("requests"), {}
+    for number, (name, output) in enumerate(scene.outputs().items()):
+        if not isinstance(section, dict) or name.partition(".")[0] not in section or name not in outputs:
+            continue
+        channel = OF_REQUEST.format(number)
+        change = f"states.{channel}", {"numerator": [1], "denominator": [1], "input": output.text}
+        extended = replace(written, changes=(*written.changes, change))
+        try:
+            read_changed(extended, ())
+        except InputError:
+            continue
+        written, found[name] = extended, channel
+    return written, found

@@ -15,7 +15,7 @@ from .symbols import Symbols, symbols_of
 
 
 @dataclass(frozen=True)
-class Stated:
+class ElementEquations:
     """Expressions from which everything else is derived.
 
     - `point`: reference point of the reaction's torque.
@@ -38,7 +38,7 @@ class Stated:
     condensed: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
 
 
-def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
+def equations_of_joint(kind: Kind, symbols: Symbols) -> ElementEquations:
     """Return the equations of a joint. Raises InputError if they are invalid; names the class."""
     asked = _Asked(kind.element, symbols)
     position, velocity = asked.column("position"), asked.column("velocity")
@@ -48,10 +48,10 @@ def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
             f"{kind.element.__name__}: found {len(position) + len(velocity)} expressions from position and velocity, "
             f"expected {len(names)}, one for each of its equations ({', '.join(names)})"
         )
-    return asked.known(Stated(asked.column("point"), asked.event_functions(), position, velocity))
+    return asked.known(ElementEquations(asked.column("point"), asked.event_functions(), position, velocity))
 
 
-def measured_by_joint(kind: Kind, symbols: Symbols, lam: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
+def measured_of_joint(kind: Kind, symbols: Symbols, lam: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
     """Return the reported values of a joint, given its multipliers: coordinates with their rates, or an effort.
 
     Raises InputError if they are invalid; names the class.
@@ -59,10 +59,10 @@ def measured_by_joint(kind: Kind, symbols: Symbols, lam: Iterable[sp.Expr]) -> t
     asked, e = _Asked(kind.element, symbols), symbols.element
     e.counts, e.__dict__["lam"] = False, list(lam)
     measured = asked.measured()
-    return asked.known(Stated((), (), measured=measured)).measured
+    return asked.known(ElementEquations((), (), measured=measured)).measured
 
 
-def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
+def equations_of_force(kind: Kind, symbols: Symbols) -> ElementEquations:
     """Return the law of a force. Raises InputError if it is invalid; names the class."""
     asked = _Asked(kind.element, symbols)
     powers, condensed = asked.pairs(), asked.condensed()
@@ -74,7 +74,7 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
             f"{kind.element.__name__}.rates: found {len(rates)} expressions, expected {kind.n_own}, one for each of its own_states"
         )
     return asked.known(
-        Stated(
+        ElementEquations(
             asked.column("point"), asked.event_functions(), powers=powers, potential=potential, limits=limits,
             measured=measured, rates=rates, condensed=condensed,
         )
@@ -89,12 +89,12 @@ def multipliers(name: str, count: int) -> sp.Matrix:
 def text_of(kind: Kind) -> str:
     """Return a text that determines all derived terms of a kind: its equations and the expressions of their symbols."""
     symbols = symbols_of(kind)
-    stated = (stated_by_joint if issubclass(kind.element, Joint) else stated_by_force)(kind, symbols)
+    equations = (equations_of_joint if issubclass(kind.element, Joint) else equations_of_force)(kind, symbols)
     if issubclass(kind.element, Joint):
-        lam = multipliers("lam", len(stated.position) + len(stated.velocity))
-        stated = replace(stated, measured=measured_by_joint(kind, symbols, lam))
+        lam = multipliers("lam", len(equations.position) + len(equations.velocity))
+        equations = replace(equations, measured=measured_of_joint(kind, symbols, lam))
     e, laws = symbols.element, [(law.argument, *law.of) for law in symbols.laws]
-    parts = (*vars(stated).values(), list(e.meanings.items()), symbols.numbers, laws, e.angles, symbols.joint_lam)
+    parts = (*vars(equations).values(), list(e.meanings.items()), symbols.numbers, laws, e.angles, symbols.joint_lam)
     return repr((sp.srepr(parts), getattr(kind.element, "turns", False)))
 
 
@@ -147,15 +147,15 @@ class _Asked:
         own = self.column("event_functions") if named else [x for x in self.e.breakpoints if self.symbols.in_state(x)]
         return (*self.symbols.event_functions, *(x for x in own if named or x not in self.symbols.event_functions))
 
-    def known(self, stated: Stated) -> Stated:
+    def known(self, equations: ElementEquations) -> ElementEquations:
         """Return the equations after a check that all symbols are defined."""
-        parts = sp.flatten(vars(stated).values())
+        parts = sp.flatten(vars(equations).values())
         meant = {*self.symbols.known(), *getattr(self.e, "lam", ())}
         for symbol in sorted({symbol for x in parts for symbol in self.e.derivatives.variables(x)} - meant, key=str):
             raise InputError(
                 f"{self.element.__name__}: found the symbol {symbol} in its equations, expected fields, markers and time of e"
             )
-        return stated
+        return equations
 
     def _called(self, name: str) -> Any:
         try:

@@ -20,7 +20,7 @@ def at_zero(values, count):
 
 
 @compiled
-def note_sides(signs, values, seen, held, count):
+def note_signs(signs, values, seen, held, count):
     """Set the sign of each function that has kept it for enough values; return the number of functions without."""
     open_ones = 0
     for k in range(count):
@@ -37,7 +37,7 @@ def note_sides(signs, values, seen, held, count):
 
 
 @compiled
-def find_sides(x, w, s, t, ahead, most, go_ahead):
+def find_signs(x, w, s, t, ahead, most, go_ahead):
     """Find the signs of functions that are zero at t; return the last time up to `most` at which the motion was looked at.
 
     `go_ahead(x, s, ahead)` loads the state that the motion reaches.
@@ -49,13 +49,13 @@ def find_sides(x, w, s, t, ahead, most, go_ahead):
         w.m2[k] = 0.0
     while undecided > 0 and 0.0 < ahead <= most:
         go_ahead(x, s, ahead)
-        undecided = note_sides(w.value_before, switches(w, s, t + ahead), w.m, w.m2, count)
+        undecided = note_signs(w.value_before, switches(w, s, t + ahead), w.m, w.m2, count)
         ahead *= SEARCH.longer
     return ahead / SEARCH.longer
 
 
 @compiled
-def keep_sides(signs, values, count):
+def keep_signs(signs, values, count):
     """Clear the signs of functions that were zero unless values confirm all; return True if they are kept."""
     lost = 0
     for k in range(count):

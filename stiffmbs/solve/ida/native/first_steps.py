@@ -1,4 +1,4 @@
-"""Passages: short times from a restart of IDA until the motion leaves a law, which a first step must resolve.
+"""First steps after a restart of IDA: they resolve a passage, the short time until the motion leaves a law.
 
 The error estimate of a step of order 1 compares the forces at its ends.  If these agree, as before and after a short
 interval of another law, the step is accepted without the forces in between.  A one-step method begins with long steps,
@@ -16,7 +16,7 @@ from stiffmbs.solve.ida.native.ida_memory import array_of
 
 
 @compiled
-def bound_passage(c, w, s, toward, stop):
+def bound_first_steps(c, w, s, toward, stop):
     """Limit steps until the motion extrapolated by initial accelerations leaves a law.
 
     The first step is limited if the forces of the passage change an unknown by more than its tolerance.  Every step of

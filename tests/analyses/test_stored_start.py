@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.analyses import found_before, job
+from stiffmbs.analyses import job, stored_start
 
 from .test_settled_start import SCENE
 
 
 @pytest.fixture
 def scene(tmp_path, monkeypatch):
-    monkeypatch.setattr(found_before, "machine", lambda: str(tmp_path))
-    found_before._solver.cache_clear()
+    monkeypatch.setattr(stored_start, "machine", lambda: str(tmp_path))
+    stored_start._solver.cache_clear()
     path = tmp_path / "scene.yaml"
     path.write_text(SCENE)
     yield path
-    found_before._solver.cache_clear()
+    stored_start._solver.cache_clear()
 
 
 @pytest.fixture
@@ -50,16 +50,16 @@ def test_anything_that_a_start_depends_on_makes_it_searched_anew(scene, searches
         case "numpy":
             monkeypatch.setattr(np, "__version__", "0")
         case "library":
-            monkeypatch.setattr(found_before, "installed_version", lambda name: "0")
+            monkeypatch.setattr(stored_start, "installed_version", lambda name: "0")
         case "threads":
             monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
         case "file":
-            package = shutil.copytree(found_before.PACKAGE / "equilibria", scene.parent / "equilibria")
+            package = shutil.copytree(stored_start.PACKAGE / "equilibria", scene.parent / "equilibria")
             (package / "parameters.py").write_text("changed")
-            monkeypatch.setattr(found_before, "PACKAGE", package)
-    found_before._solver.cache_clear()
+            monkeypatch.setattr(stored_start, "PACKAGE", package)
+    stored_start._solver.cache_clear()
     stiffmbs.run(scene, **settings)
     stiffmbs.run(scene, **settings)
     monkeypatch.undo()
-    found_before._solver.cache_clear()
+    stored_start._solver.cache_clear()
     assert len(searches) == 2

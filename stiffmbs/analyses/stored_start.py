@@ -30,7 +30,7 @@ Found = TypeVar("Found")
 PACKAGE = Path(__file__).parents[1]
 
 
-class FoundBefore:
+class StoredStart:
     """Findings of a job before it integrates, from the cache or new.
 
     Described starts need no search, and code of other packages may change; both are computed each time.

@@ -26,7 +26,7 @@ NOT_AS_WRITTEN = ("use", "stages", OPTIONS, CHOOSE)
 """Sections that make the entries of a scene differ from those of its file."""
 
 
-class OtherForces:
+class ChangedForces:
     """Scenes with other values of some parameters and of some fields of forces.
 
     `names`: paths of the varied values, as for `stiffmbs.load_scene`. `unchanged`: record of a scene of the same

@@ -5,7 +5,7 @@ import copy
 import pytest
 
 from stiffmbs.compile.kind import sorted_out
-from stiffmbs.model.files.other_forces import OtherForces
+from stiffmbs.model.files.changed_forces import ChangedForces
 from stiffmbs.model.read_scene import made_scene, read_scene
 from stiffmbs.reading.files.unchanged import Unchanged
 from stiffmbs.studies.case_solver import written_scene
@@ -30,7 +30,7 @@ def both(names, first, values):
     """The scene from its forces, and as a whole."""
     written, unchanged = written_scene(read_scene(SCENE)), Unchanged()
     whole(written, names, first, unchanged)
-    return OtherForces(written, names, unchanged).scene(values), lambda: whole(written, names, values, Unchanged())
+    return ChangedForces(written, names, unchanged).scene(values), lambda: whole(written, names, values, Unchanged())
 
 
 @pytest.mark.parametrize(
