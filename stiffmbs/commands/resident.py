@@ -11,16 +11,29 @@ import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 VARIABLE = "STIFFMBS_RESIDENT"
 FOLDER = "resident"
 """Folder of the sockets in the cache directory; the user alone may enter it."""
 ACCEPTED = b"a"
 """Answer of the resident process before it forks; without it the command runs as usual."""
-LONGEST = 100
+LONGEST: Final = 100
 """Number of bytes in the longest path of a socket, for which systems have 104 or more."""
-_OF_INTERPRETER = ("PYTHON", "LC_", "LANG", "LD_", "DYLD_", "MALLOC_", "OPENBLAS_", "OMP_", "TZ", VARIABLE, "SYMPY_", "PYDANTIC_")
+_OF_INTERPRETER = (
+    "PYTHON",
+    "LC_",
+    "LANG",
+    "LD_",
+    "DYLD_",
+    "MALLOC_",
+    "OPENBLAS_",
+    "OMP_",
+    "TZ",
+    VARIABLE,
+    "SYMPY_",
+    "PYDANTIC_",
+)
 """Beginnings of the names of variables that take effect when a process starts, or a module is loaded."""
 
 
@@ -28,6 +41,13 @@ def passed_on() -> int | None:
     """Return the exit status of this command from the resident process; None if it has to run here."""
     from ..cache.ownership import NotOwnError, check_folder
 
+    given = os.environ.get(VARIABLE, "")
+    try:
+        if not float(given or 0) > 0:
+            return None
+    except ValueError:
+        print(f"stiffmbs: note: {VARIABLE}: found {given!r}, expected a number of seconds", file=sys.stderr)
+        return None
     with suppress(OSError, NotOwnError):
         path = address() if can_be_passed_on() else None
         if path is not None:

@@ -57,18 +57,19 @@ class Server:
 
     def wait(self) -> bool:
         """Wait for commands, and return True in the process of each; False when none came for long, or a source has changed."""
-        is_needed = True
-        while is_needed or self.running:
-            ready, _, _ = select.select([self.listening, self._ended], [], [], self._patience)
-            is_needed = bool(ready)
+        listening = self.listening.fileno()
+        sources = [self._ended, listening]
+        while listening in sources or self.running:
+            ready, _, _ = select.select(sources, [], [], self._patience)
             if self._ended in ready:
                 os.read(self._ended, 4096)
                 self._collect()
-            if self.listening in ready:
-                if self._sources.have_changed():
-                    return False
+            if listening in ready and not self._sources.have_changed():
                 if self._forked():
                     return True
+            elif listening in sources and (listening in ready or not (ready or self.running)):
+                sources.remove(listening)
+                self.listening.close()  # a command that waits there runs as usual
         return False
 
     def _forked(self) -> bool:

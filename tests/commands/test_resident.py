@@ -3,11 +3,13 @@
 import os
 import resource
 import signal
+import socket
 import stat
 import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
@@ -103,7 +105,17 @@ def test_signals_reach_the_command(number, cache, tmp_path):
 def test_a_command_ends_with_the_process_in_the_terminal(cache, tmp_path):
     """The resident process, which waits for its commands, could not end otherwise."""
     started(cache)
-    long = [*COMMAND, "run", str(EXAMPLES / "cart_pendulum.yaml"), "--duration", "1e5", "--set", "run.output=0.1", "-o", str(tmp_path / "out.npz")]
+    long = [
+        *COMMAND,
+        "run",
+        str(EXAMPLES / "cart_pendulum.yaml"),
+        "--duration",
+        "1e5",
+        "--set",
+        "run.output=0.1",
+        "-o",
+        str(tmp_path / "out.npz"),
+    ]
     process = subprocess.Popen(long, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment(cache))
     time.sleep(1.5 * PATIENCE)
     assert sockets(cache)  # it waits for the command; the end of this module waits for it
@@ -122,6 +134,42 @@ def test_a_folder_that_others_write_to_is_not_used(tmp_path):
     folder.chmod(0o777)
     assert told("--version", cache=tmp_path)[0] == 0
     assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize("patience, note", [("", b""), ("0", b""), ("soon", b"STIFFMBS_RESIDENT: found 'soon', expected")])
+def test_without_a_time_no_process_is_started(patience, note, tmp_path):
+    status, _, err = told("--version", cache=tmp_path, patience=patience)
+    assert status == 0
+    assert note in err and bool(note) == bool(err)
+    assert not (tmp_path / resident.FOLDER).exists()
+
+
+def test_after_a_change_commands_under_way_keep_their_status_and_new_ones_run_as_usual(monkeypatch):
+    with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX) as listening:
+        listening.bind(f"{folder}/socket")
+        listening.listen()
+        monkeypatch.setenv(resident.VARIABLE, "0.2")
+        before = signal.getsignal(signal.SIGCHLD), signal.set_wakeup_fd(-1)
+        server = serving.Server(listening)
+        try:
+            monkeypatch.setattr(server._sources, "have_changed", lambda: True)
+            client, told = socket.socketpair()
+            names, telling = os.pipe()
+            os.close(telling)
+            child = os.fork()
+            if not child:
+                time.sleep(1)
+                os._exit(3)
+            server.running[child] = told, names
+            waiting = socket.socket(socket.AF_UNIX)
+            waiting.connect(f"{folder}/socket")
+            assert server.wait() is False
+            assert client.recv(1) == b"\3"
+            with suppress(ConnectionResetError):
+                assert waiting.recv(1) == b""
+        finally:
+            signal.signal(signal.SIGCHLD, before[0])
+            signal.set_wakeup_fd(before[1])
 
 
 def test_processes_with_other_limits_have_a_resident_process_of_their_own(monkeypatch, cache):
