@@ -39,7 +39,8 @@ class Predicted:
 
     def __init__(self, end: float, watch: ProgressCallback, parameters: Drafted = DRAFTED) -> None:
         self._end, self._watch, self._parameters = end, watch, parameters
-        self._last = math.inf
+        self._last = self._now = math.inf
+        self._drafts = 0
 
     def __call__(self, t: float) -> None:
         self._watch(t)

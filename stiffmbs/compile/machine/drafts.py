@@ -74,14 +74,16 @@ class Draft(NamedTuple):
 
     def packed(self) -> bytes:
         """Return the content of the entry."""
-        head = json.dumps([*self[:-2], len(self.code)])
+        head = json.dumps([*self[:-2], len(self.code), len(self.assembly)])
         return head.encode() + b"\n" + self.code + self.assembly
 
     @classmethod
     def unpacked(cls, content: bytes) -> Draft:
         """Return the draft in an entry; raises ValueError if it is of another form."""
         head, _, rest = content.partition(b"\n")
-        entry, of_origin, level, unrolled, is_quick, symbols, size = json.loads(head)
+        entry, of_origin, level, unrolled, is_quick, symbols, size, behind = json.loads(head)
+        if len(rest) != size + behind:
+            raise ValueError(f"found {len(rest)} bytes, expected {size + behind}")
         return cls(entry, of_origin, level, unrolled, is_quick, symbols, rest[:size], rest[size:])
 
     def text(self, names: str) -> str:
