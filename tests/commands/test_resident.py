@@ -136,7 +136,9 @@ def test_a_folder_that_others_write_to_is_not_used(tmp_path):
     assert not list(folder.iterdir())
 
 
-@pytest.mark.parametrize("patience, note", [("", b""), ("0", b""), ("soon", b"STIFFMBS_RESIDENT: found 'soon', expected")])
+@pytest.mark.parametrize(
+    "patience, note", [("", b""), ("0", b""), ("soon", b"STIFFMBS_RESIDENT: found 'soon', expected")]
+)
 def test_without_a_time_no_process_is_started(patience, note, tmp_path):
     status, _, err = told("--version", cache=tmp_path, patience=patience)
     assert status == 0
