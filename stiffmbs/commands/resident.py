@@ -21,19 +21,8 @@ ACCEPTED = b"a"
 LONGEST: Final = 100
 """Number of bytes in the longest path of a socket, for which systems have 104 or more."""
 _OF_INTERPRETER = (
-    "PYTHON",
-    "LC_",
-    "LANG",
-    "LD_",
-    "DYLD_",
-    "MALLOC_",
-    "OPENBLAS_",
-    "OMP_",
-    "TZ",
-    VARIABLE,
-    "SYMPY_",
-    "PYDANTIC_",
-)
+    "PYTHON", "LC_", "LANG", "LD_", "DYLD_", "MALLOC_", "OPENBLAS_", "OMP_", "TZ", VARIABLE, "SYMPY_", "PYDANTIC_"
+)  # fmt: skip
 """Beginnings of the names of variables that take effect when a process starts, or a module is loaded."""
 
 

@@ -55,8 +55,9 @@ class Server:
         signal.signal(signal.SIGCHLD, lambda number, frame: None)
         signal.set_wakeup_fd(waking)
 
-    def wait(self) -> bool:
-        """Wait for commands, and return True in the process of each; False when none came for long, or a source has changed."""
+    def wait(self) -> tuple[socket.socket, int] | None:
+        """Wait for commands, and return what is given to `_become` in the process of each; None when none came for long,
+        or a source has changed."""
         listening = self.listening.fileno()
         sources = [self._ended, listening]
         while listening in sources or self.running:
@@ -65,15 +66,15 @@ class Server:
                 os.read(self._ended, 4096)
                 self._collect()
             if listening in ready and not self._sources.have_changed():
-                if self._forked():
-                    return True
+                if taken := self._forked():
+                    return taken
             elif listening in sources and (listening in ready or not (ready or self.running)):
                 sources.remove(listening)
                 self.listening.close()  # a command that waits there runs as usual
-        return False
+        return None
 
-    def _forked(self) -> bool:
-        """Accept a command; return True in the process that is to run it."""
+    def _forked(self) -> tuple[socket.socket, int] | None:
+        """Accept a command; return its connection, and the pipe to this process, in the process that is to run it."""
         connection, _ = self.listening.accept()
         names, telling = os.pipe()
         gc.freeze()
@@ -81,7 +82,7 @@ class Server:
         if number:
             os.close(telling)
             self.running[number] = connection, names
-            return False
+            return None
         for other, of_other in self.running.values():
             other.close()
             os.close(of_other)
@@ -89,8 +90,7 @@ class Server:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         os.set_blocking(telling, False)
         self.listening.close()
-        _become(connection, telling)
-        return True
+        return connection, telling
 
     def _collect(self) -> None:
         """Send the exit statuses of ended commands, and load the modules that they needed."""
@@ -114,15 +114,18 @@ def wait_for_a_command(address: str) -> None:
     path = Path(address)
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     path.parent.chmod(0o700)
+    taken = None
     with suppress(OSError), alone(path.with_suffix(".lock")):
         path.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
             listening.bind(address)
             listening.listen()
-            if Server(listening).wait():
-                return
-        path.unlink()
-    sys.exit()
+            taken = Server(listening).wait()
+        if taken is None:
+            path.unlink()
+    if taken is None:
+        sys.exit()
+    _become(*taken)
 
 
 def _become(connection: socket.socket, telling: int) -> None:

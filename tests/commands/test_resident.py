@@ -1,5 +1,6 @@
 """Commands in the resident process: as in a process of their own, safe, and gone when it is not needed."""
 
+import json
 import os
 import resource
 import signal
@@ -123,6 +124,20 @@ def test_a_command_ends_with_the_process_in_the_terminal(cache, tmp_path):
     process.wait()
 
 
+def test_a_command_in_a_folder_that_is_gone_fails_alone(cache, tmp_path):
+    started(cache)
+    line = ["stiffmbs", "--version"]
+    content = json.dumps([line, [sys.executable, *line], str(tmp_path / "gone"), sys.path, dict(os.environ)]).encode()
+    (path,) = sockets(cache)
+    with socket.socket(socket.AF_UNIX) as connection, open(os.devnull, "r+b") as quiet:
+        connection.connect(str(path))
+        socket.send_fds(connection, [len(content).to_bytes(8, "little")], [quiet.fileno()] * 3)
+        connection.sendall(content)
+        assert connection.recv(1) == resident.ACCEPTED
+        assert connection.recv(1) == b"\1"
+    assert sockets(cache) == [path]
+
+
 def test_the_user_alone_reaches_the_socket(cache):
     started(cache)
     assert stat.S_IMODE((cache / resident.FOLDER).stat().st_mode) == 0o700
@@ -165,7 +180,7 @@ def test_after_a_change_commands_under_way_keep_their_status_and_new_ones_run_as
             server.running[child] = told, names
             waiting = socket.socket(socket.AF_UNIX)
             waiting.connect(f"{folder}/socket")
-            assert server.wait() is False
+            assert server.wait() is None
             assert client.recv(1) == b"\3"
             with suppress(ConnectionResetError):
                 assert waiting.recv(1) == b""

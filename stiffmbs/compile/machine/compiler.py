@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import logging
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -258,4 +259,4 @@ def drafted(entry: str, source: Source) -> drafts.Draft:
         Entry(namespace[name], symbol(drafts.OPEN, name), *c_types(signature)) for name, signature in source.signatures
     ]
     text = assembly(functions, source.text, INLINED)
-    return drafts.Draft(entry, origin(), source.level, source.unrolled, False, "", b"", drafts.compressed(text))
+    return drafts.Draft(entry, origin(), source.level, source.unrolled, False, "", b"", zlib.compress(text.encode(), 1))

@@ -95,11 +95,6 @@ class Draft(NamedTuple):
         return object_code(self.text(self.entry), self.level, self.unrolled)
 
 
-def compressed(assembly: str) -> bytes:
-    """Return assembly as it is stored."""
-    return zlib.compress(assembly.encode(), 1)
-
-
 def draft_in(content: bytes | None) -> Draft | None:
     """Return the draft in the content of an entry; None if there is none, or it has another form."""
     try:
