@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import dataclass
 
+from ..compile.machine.drafts import number_used
 from ..solve.trajectory import ProgressCallback
 
 
@@ -32,18 +33,26 @@ class TakesLongError(Exception):
 class Predicted:
     """Progress callback that raises TakesLongError when the rest of a run on drafts takes too long.
 
-    Results do not depend on it, because both levels of compilation give bit-equal results.
+    Intervals in which code was compiled say nothing about the rest. Results do not depend on it, because both levels of
+    compilation give bit-equal results.
     """
 
     def __init__(self, end: float, watch: ProgressCallback, parameters: Drafted = DRAFTED) -> None:
         self._end, self._watch, self._parameters = end, watch, parameters
-        self._first = self._last = math.inf
+        self._last = self._now = math.inf
+        self._drafts = 0
 
     def __call__(self, t: float) -> None:
         self._watch(t)
-        if t < self._last:  # at first, and where a repeated run begins; earlier time was spent on compiling
-            self._first, self._begin = t, time.process_time()
-        self._last = t
-        spent = time.process_time() - self._begin
-        if spent > self._parameters.least and spent * (self._end - t) > self._parameters.patience * (t - self._first):
+        now, drafts = time.process_time(), number_used()
+        if t < self._last:  # at first, and where a repeated run begins
+            self._spent = self._gone = 0.0
+        elif drafts == self._drafts:
+            self._spent += now - self._now
+            self._gone += t - self._last
+        self._last, self._now, self._drafts = t, now, drafts
+        if (
+            self._spent > self._parameters.least
+            and self._spent * (self._end - t) > self._parameters.patience * self._gone
+        ):
             raise TakesLongError

@@ -48,7 +48,7 @@ def most_elements_of_a_beam():
 
 def takes_long(spent, rest):
     """Tell whether a run is given up that took some seconds of processor time, and is predicted to take more of them."""
-    clock = iter((0.0, 0.0, spent))
+    clock = iter((0.0, spent))
     watch = long_runs.Predicted(1.0, nothing)
     with patch.object(long_runs.time, "process_time", lambda: next(clock)):
         watch(0.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import logging
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -211,7 +212,7 @@ def _draft(entry: str, shipped: str, source: Source) -> dict[str, Compiled] | No
     if draft is None and drafts.tier() == drafts.Tier.DRAFT and drafts.can_be_finished():
         with uncollected():
             made = drafted(entry, source)
-            code = object_code(made.assembly.replace(drafts.OPEN, name), DRAFT, source.unrolled)
+            code = object_code(made.text(name), DRAFT, source.unrolled)
         draft = made._replace(is_quick=True, symbols=name, code=code)
         if not entries.write(name, draft.packed()):
             with uncollected():
@@ -230,8 +231,8 @@ def in_library(follows_from: FollowsFrom, source: Source) -> tuple[str, bytes]:
     """
     name = entries.name_of(*follows_from, generic_machine())
     made = drafted("", source)
-    code = object_code(made.assembly.replace(drafts.OPEN, name), source.level, source.unrolled, GENERIC)
-    kept = made.assembly if source.level == FULL else ""
+    code = object_code(made.text(name), source.level, source.unrolled, GENERIC)
+    kept = made.assembly if source.level == FULL else b""
     return name, made._replace(symbols=name, code=code, assembly=kept).packed()
 
 
@@ -242,7 +243,7 @@ def in_shared_library(unit: Unit, target: Target) -> tuple[str, bytes]:
     code = entries.read(entry)
     if code is None:
         with uncollected():
-            text = drafted("", unit.source).assembly.replace(symbol(drafts.OPEN, ""), prefix)
+            text = drafted("", unit.source).text(drafts.OPEN).replace(symbol(drafts.OPEN, ""), prefix)
             code = object_code(text, unit.source.level, unit.source.unrolled, target=target)
         entries.write(entry, code)
     return prefix, code
@@ -258,4 +259,4 @@ def drafted(entry: str, source: Source) -> drafts.Draft:
         Entry(namespace[name], symbol(drafts.OPEN, name), *c_types(signature)) for name, signature in source.signatures
     ]
     text = assembly(functions, source.text, INLINED)
-    return drafts.Draft(entry, origin(), source.level, source.unrolled, False, "", b"", text)
+    return drafts.Draft(entry, origin(), source.level, source.unrolled, False, "", b"", zlib.compress(text.encode(), 1))

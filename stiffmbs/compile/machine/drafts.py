@@ -60,7 +60,7 @@ class Draft(NamedTuple):
     - `is_quick`: whether the code was compiled at the level `DRAFT`, not for the library.
     - `symbols`: part of the names of functions in the code, for `stiffmbs.compile.machine.linking.symbol`; that of the
       assembly is `OPEN`.
-    - `assembly`: empty for code of the library that is used for good.
+    - `assembly`: compressed; empty for code of the library that is used for good.
     """
 
     entry: str
@@ -70,27 +70,29 @@ class Draft(NamedTuple):
     is_quick: bool
     symbols: str
     code: bytes
-    assembly: str
+    assembly: bytes
 
     def packed(self) -> bytes:
         """Return the content of the entry."""
-        head = json.dumps([*self[:-2], len(self.code)])
-        return head.encode() + b"\n" + self.code + zlib.compress(self.assembly.encode(), 1)
+        head = json.dumps([*self[:-2], len(self.code), len(self.assembly)])
+        return head.encode() + b"\n" + self.code + self.assembly
 
     @classmethod
     def unpacked(cls, content: bytes) -> Draft:
         """Return the draft in an entry; raises ValueError if it is of another form."""
         head, _, rest = content.partition(b"\n")
-        entry, of_origin, level, unrolled, is_quick, symbols, size = json.loads(head)
-        try:
-            assembly = zlib.decompress(rest[size:]).decode()
-        except zlib.error as error:
-            raise ValueError(str(error)) from None
-        return cls(entry, of_origin, level, unrolled, is_quick, symbols, rest[:size], assembly)
+        entry, of_origin, level, unrolled, is_quick, symbols, size, behind = json.loads(head)
+        if len(rest) != size + behind:
+            raise ValueError(f"found {len(rest)} bytes, expected {size + behind}")
+        return cls(entry, of_origin, level, unrolled, is_quick, symbols, rest[:size], rest[size:])
+
+    def text(self, names: str) -> str:
+        """Return the assembly with a part of the names of its functions."""
+        return zlib.decompress(self.assembly).decode().replace(OPEN, names)
 
     def finished(self) -> bytes:
         """Return the object code at the full level."""
-        return object_code(self.assembly.replace(OPEN, self.entry), self.level, self.unrolled)
+        return object_code(self.text(self.entry), self.level, self.unrolled)
 
 
 def draft_in(content: bytes | None) -> Draft | None:
@@ -115,7 +117,7 @@ def draft_of(entry: str, shipped: str) -> Draft | None:
     if found is None and shipped and (found := draft_in(library.read(shipped))):
         found = found._replace(entry=entry, origin=origin())
         if found.assembly and not entries.write(name_of(entry), found.packed()):
-            found = found._replace(assembly="")
+            found = found._replace(assembly=b"")
     return found
 
 
@@ -174,6 +176,11 @@ def some_are_finished() -> bool:
 def quick_ones_are_used() -> bool:
     """Return True if this process uses code of the level `DRAFT`."""
     return any(tuple(_used.values()))
+
+
+def number_used() -> int:
+    """Return how many drafts, and functions of the library, this process uses."""
+    return len(_used)
 
 
 def are_used() -> bool:

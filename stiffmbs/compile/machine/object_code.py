@@ -98,6 +98,7 @@ def llvm_version() -> str:
     return str(llvmlite.__version__)
 
 
+@cache
 def generic_machine() -> str:
     """Return a digest of the processor of the library's code; empty if this processor cannot execute it."""
     import llvmlite.binding as llvm

@@ -15,6 +15,7 @@ import re
 import sys
 import tokenize
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 from ..files.quoted import quoted
@@ -25,6 +26,8 @@ _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+
 """Number directly followed by a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
 LONGEST_TEXT = 50 * MOST_PARTS
 """Largest number of characters of a formula, which bounds the time to count its parts."""
+TEXTS = 4096
+"""Number of cached texts."""
 
 UNIT_BY_KEYWORD = {"in": "inch"}
 """Units whose names are keywords of Python."""
@@ -74,6 +77,7 @@ def _with_owners(tree: ast.expr) -> ast.expr:
     return tree
 
 
+@lru_cache(maxsize=TEXTS)
 def _python_spelling(text: str) -> str:
     """Rewrite ``5 N m/rad`` as ``(5*unit.N*unit.m)/rad`` and ``^`` as ``**``."""
     spaced = _NUMBER_AND_NAME.sub(r"\1 ", text.strip().replace("^", "**"))

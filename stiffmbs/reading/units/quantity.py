@@ -12,11 +12,9 @@ from ..did_you_mean import did_you_mean
 from ..files.quoted import quoted, written
 from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
 from ..formula.measured import dimension_of
-from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
+from ..formula.text import OF_NUMBERS, TEXTS, UNIT, FormulaError, evaluate, parse
 from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_its_unit, one, unit_of_spelling
 
-TEXTS = 4096
-"""Number of cached texts."""
 LARGEST = 1e100
 """Largest number, in SI units; products of three such numbers do not overflow."""
 
