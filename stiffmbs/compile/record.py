@@ -112,6 +112,7 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
     LOGGER.info("deriving %s", with_place(kind, place.words))
     with uncollected():
         record = _derived(kind)
+    forget()
     if entry:
         entries.write(of_installed(entry), packed(record))
     return record
@@ -222,6 +223,16 @@ def _by_loops(kind: Kind) -> KindRecord:
     terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
     sources = {name: terms.source(places) for name in TERM_SETS if (places := _places(terms, name))}
     return KindRecord(0, 0, [], [], [], dict(terms.patterns), sources, None, [], [], [])
+
+
+def forget() -> None:
+    """Remove expressions from the caches of SymPy, whose reuse by other kinds is rare; those of a flexible body take 20 MB."""
+    from sympy.core.cache import clear_cache
+
+    from .symbolic.read import is_ready
+
+    clear_cache()
+    is_ready.cache_clear()
 
 
 def _derived(kind: Kind) -> KindRecord:

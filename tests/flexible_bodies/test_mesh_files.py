@@ -197,6 +197,8 @@ def test_a_file_of_any_format_that_ends_early_is_read_or_refused(tmp_path, suffi
 
 
 ORDERS = {
+    ("hexahedron27", ".inp"): "01 12 23 30 45 56 67 74 04 15 26 37 01234567 0123 4567 0154 1265 2376 3740",
+    ("pyramid", ".inp"): "",
     ("hexahedron20", ".inp"): "01 12 23 30 45 56 67 74 04 15 26 37",
     ("hexahedron20", ".bdf"): "01 12 23 30 04 15 26 37 45 56 67 74",
     ("hexahedron20", ".msh"): "01 03 04 12 15 23 26 37 45 47 56 67",
@@ -214,6 +216,8 @@ WORDS = {
     "wedge15": ("C3D15", "CPENTA", 18),
     "tetra10": ("C3D10", "CTETRA", 11),
     "wedge18": ("", "", 13),
+    "hexahedron27": ("C3D27", "", 12),
+    "pyramid": ("C3D5", "", 7),
 }
 
 
@@ -240,7 +244,14 @@ def test_nodes_on_edges_are_in_the_order_of_the_file(tmp_path, kind, suffix):
         text = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(grid)}\n{nodes}$EndNodes\n"
         text += f"$Elements\n1\n1 {gmsh} 2 1 1 {' '.join(numbers)}\n$EndElements\n"
     found = read(tmp_path / f"a{suffix}", text)
-    volume = {"hexahedron20": 1.0, "wedge15": 0.5, "wedge18": 0.5, "tetra10": 1 / 6}[kind]
+    volume = {
+        "hexahedron20": 1.0,
+        "hexahedron27": 1.0,
+        "pyramid": 4 / 3,
+        "wedge15": 0.5,
+        "wedge18": 0.5,
+        "tetra10": 1 / 6,
+    }[kind]
     assert found.mass.sum() / 3 == pytest.approx(7850 * volume)
     (cells,) = found.cells.values()
     for k, between in enumerate(KINDS[kind].middles, len(corners)):
