@@ -116,8 +116,8 @@ def _faces(model: FiniteElements, nodes: np.ndarray) -> Iterator[Face]:
                 face = Face(cell[own], values[own], normals)
                 sharing.setdefault(tuple(sorted(cell[list(corners)].tolist())), []).append(face)
     for faces in sharing.values():
-        own = set(faces[0].nodes.tolist())
-        is_covered = any(shell <= own for node in own for shell in at_nodes.get(node, ()))
+        around = set(faces[0].nodes.tolist())
+        is_covered = any(shell <= around for node in around for shell in at_nodes.get(node, ()))
         if len(faces) == 1 and not is_covered:  # others are within the body
             yield faces[0]
 

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     import meshio
 
-PARTS: Final = {
+PARTS: Final[dict[str, dict[str, tuple[tuple[int, ...], ...]]]] = {
     "triangle6": {"triangle": ((0, 3, 5), (1, 4, 3), (2, 5, 4), (3, 4, 5))},
     "quad8": {"triangle": ((0, 4, 7), (1, 5, 4), (2, 6, 5), (3, 7, 6)), "quad": ((4, 5, 6, 7),)},
     "quad9": {"quad": ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3))},

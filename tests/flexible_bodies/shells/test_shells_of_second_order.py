@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.errors import InputError
+from stiffmbs.flexible_bodies.areas import unit_loads
 from stiffmbs.flexible_bodies.description import Material
 from stiffmbs.flexible_bodies.mesh import from_mesh
 
@@ -33,8 +34,6 @@ def test_a_clamped_plate_under_pressure(tmp_path, kind, error):
     found = model(tmp_path, curved(8, kind, lambda a, b: (a, b, 0)), 1e9, 0.3, 2e-3)
     x, y, _ = found.nodes.T
     edge = np.flatnonzero((np.minimum(x, 1 - x) < 1e-9) | (np.minimum(y, 1 - y) < 1e-9))
-    from stiffmbs.flexible_bodies.areas import unit_loads
-
     load = -unit_loads(found, np.arange(len(x)), np.array([0.0, 0.0, 1.0]), 1.0)[:, 0]
     middle = np.flatnonzero((np.abs(x - 0.5) < 1e-9) & (np.abs(y - 0.5) < 1e-9))
     moved = under(found.stiffness, places(edge, range(6)), load)[middle, 2].item()

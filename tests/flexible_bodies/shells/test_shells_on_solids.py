@@ -7,6 +7,7 @@ from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.areas import unit_loads
 from stiffmbs.flexible_bodies.description import FlexibleBody, Material
 from stiffmbs.flexible_bodies.interfaces import Interface
+from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.mirrored import mirrored
 from stiffmbs.flexible_bodies.reduction import reduce, rigid_body
 from stiffmbs.flexible_bodies.second_order import stress_of
@@ -141,23 +142,21 @@ def test_surfaces_in_no_group_with_a_thickness_are_faces_of_solids(tmp_path):
         name: plate(4, 2, lambda a, b, z=z: (LENGTH * a, WIDTH * b, z)) for name, z in (("low", 0.0), ("top", DEEP))
     }
     path = written(tmp_path / "both.inp", {"core": bricks} | skins)
-    from stiffmbs.flexible_bodies.mesh import from_mesh
-
     model = from_mesh(path, 1e-3, STEEL, thickness={"top": 1e-3})
     assert set(np.unique(model.nodes[np.unique(model.shell.triangles), 2])) == {0.02}
     assert len(model.groups["low"]) == 15
     with pytest.raises(
-        InputError, match="found one thickness for a mesh with solids .hexahedron., expected 'thicknesses' by groups"
+        InputError, match=r"found one thickness for a mesh with solids .hexahedron., expected 'thicknesses' by groups"
     ):
         from_mesh(path, 1e-3, STEEL, thickness=1e-3)
-    with pytest.raises(InputError, match="thicknesses.lid: found no group of shell elements 'lid'"):
+    with pytest.raises(InputError, match=r"thicknesses\.lid: found no group of shell elements 'lid'"):
         from_mesh(path, 1e-3, STEEL, thickness={"lid": 1e-3})
 
 
 @pytest.mark.parametrize("corner", [(LENGTH, WIDTH, DEEP), (LENGTH + 1, WIDTH, DEEP)])
 def test_a_shell_at_a_corner_of_a_solid_is_refused(tmp_path, corner):
     bricks = block((4, 2, 2), (LENGTH, WIDTH, DEEP), kind="hexahedron")
-    fin = plate(2, 2, lambda a, b: np.array(corner) + [50 * a, 50 * b, 0])
+    fin = plate(2, 2, lambda a, b: (corner[0] + 50 * a, corner[1] + 50 * b, corner[2]))
     with pytest.raises(
         InputError, match="found 2 parts that are not connected by faces of elements or edges of shells"
     ):
@@ -167,7 +166,7 @@ def test_a_shell_at_a_corner_of_a_solid_is_refused(tmp_path, corner):
 def test_an_interface_on_an_edge_of_solids_is_refused(tmp_path):
     """Rotations of nodes of solids hold nothing; an edge of a shell may be an interface."""
     model = joined_bar(tmp_path, STEEL, (10, 2, 2))
-    x, y, z = model.nodes.T
+    x, _, z = model.nodes.T
     edge = np.flatnonzero((x < 1e-9) & (z < 1e-9))
     with pytest.raises(InputError, match="found 5 nodes on one line, expected three or more"):
         reduce(model, [Interface("edge", "rigid", edge, model.nodes[edge].mean(axis=0))], 2)
