@@ -112,7 +112,5 @@ def test_a_sphere_under_pressure(tmp_path):
     moved, stress = free(model, load)
     radial = np.einsum("na,na->n", moved, model.nodes) / radius
     assert radial.mean() == pytest.approx(1e6 * radius**2 * (1 - NU) / (2 * E * thickness), rel=0.02)
-    principal = np.linalg.eigvalsh(
-        np.stack([stress[:, [0, 3, 5]], stress[:, [3, 1, 4]], stress[:, [5, 4, 2]]], axis=1)
-    )
+    principal = np.linalg.eigvalsh(np.stack([stress[:, [0, 3, 5]], stress[:, [3, 1, 4]], stress[:, [5, 4, 2]]], axis=1))
     assert principal[:, 1:].mean() == pytest.approx(1e6 * radius / (2 * thickness), rel=0.02)

@@ -6,9 +6,9 @@ nodes around it: the antisymmetric part of the affine field that fits these best
     w = sum b x u / 2,   b = (sum d d^T)^-1 d,   d: places about their mean.
 
 A spring between both takes no force in a rigid motion or a constant strain. It is soft at nodes of solids alone, whose rotation moves
-nothing else. Where the edge of a shell is welded to a solid, the spring is stiff, and the nodes around are those of all solids at the
-node, and all within half of the thickness of the shell: its bending moment acts on them (as in Abaqus' shell-to-solid coupling). A shell on a face of a
-solid follows it by the displacements of all its nodes; its rotations remain its own, because they contain no shear strain of the solid.
+nothing else. Where the edge of a shell is welded to a solid, the spring is stiff. The nodes around are those of all solids at the node, and
+all within half of the thickness of the shell. Its bending moment acts on them, as in Abaqus' shell-to-solid coupling. A shell on a face of
+a solid follows it by the displacements of all its nodes. Its rotations remain its own, because they contain no shear strain of the solid.
 """
 
 from __future__ import annotations
