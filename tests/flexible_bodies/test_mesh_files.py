@@ -12,6 +12,7 @@ from meshio._helpers import extension_to_filetypes
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.mesh import _as_vtk, _read, from_mesh
 from stiffmbs.flexible_bodies.mesh_files import for_reader
+from stiffmbs.flexible_bodies.reduction import reduce
 from stiffmbs.flexible_bodies.shapes import ELEMENTS as KINDS
 from tests.flexible_bodies.bars import STEEL, mesh_of_bar
 
@@ -309,3 +310,14 @@ def test_parts_joined_at_a_corner_are_refused(tmp_path):
     meshio.Mesh(points, [("tetra", [[0, 1, 2, 3], [0, 5, 4, 6]])]).write(tmp_path / "a.vtu")
     with pytest.raises(InputError, match="found 2 parts that are not connected by faces"):
         from_mesh(tmp_path / "a.vtu", 1.0, STEEL)
+
+
+def test_statements_and_beams_that_are_not_used_are_listed(tmp_path):
+    more = "*Material, name=STEEL\n*Elastic\n2.1e5, 0.3\n*Boundary\n1, 1, 3\n*Boundary\n2, 1, 3\n*Element, type=B31\n9, 1, 2\n"
+    assert read(tmp_path / "a.inp", ABAQUS).unused == ""
+    found = read(tmp_path / "a.inp", ABAQUS + more)
+    assert found.unused == "*MATERIAL, *ELASTIC, *BOUNDARY (2), elements B31"
+    (note,) = (each for each in reduce(found, [], 1).notes if "not used" in each)
+    assert found.unused in note
+    more = "CBAR,8,2,1,2,0.,0.,1.\nSPC1,1,123,1\nRBE2,50,1,123456,2,3\n"
+    assert read(tmp_path / "a.bdf", nastran(more=more)).unused == "PSOLID, CBAR, SPC1, RBE2"
