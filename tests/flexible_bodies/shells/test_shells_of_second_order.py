@@ -68,14 +68,12 @@ def test_the_roof_of_scordelis_and_lo(tmp_path, kind):
     assert -under(found.stiffness, held, forces.ravel())[end, 2].item() == pytest.approx(0.3024, rel=0.015)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["triangle6", "quad8"])
 def test_parts_of_an_element_are_in_its_groups(tmp_path, kind):
     mesh = curved(2, kind, lambda a, b: (a, b, 0))
     count = len(mesh.cells[0].data)
     mesh.cell_sets = {"left": [np.arange(count // 2)], "right": [np.arange(count // 2, count)]}
     mesh.point_sets = {"first": np.array([0, 1])}
-    if kind == "quad9":  # Abaqus has no such element in meshio's writer; sets are lost in other formats
-        pytest.skip("no format with sets writes it")
     mesh.write(tmp_path / "a.inp")
     thick = from_mesh(tmp_path / "a.inp", 1.0, STEEL, thickness={"left": 1e-3, "right": 2e-3})
     assert thick.mass[::6, ::6].sum() == pytest.approx(7850 * 1.5e-3)
