@@ -13,7 +13,7 @@ import sys
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,6 +36,10 @@ if TYPE_CHECKING:
 
 RARE = ("all_levels", "all_levels_tangent")
 """Term sets of the formulation index1 only; derived on first use, as they are expensive."""
+RECORDS = 128
+"""Kinds whose records and sources are kept in memory; others are read from the cache again. A car has about 60 kinds."""
+DERIVED = 4
+"""Kinds whose symbolic terms are kept in memory for their rare kernels. Those of a flexible body take 20 to 60 MB."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -97,7 +101,7 @@ def record_of(kind: Kind, place: str = "") -> KindRecord:
     return _record_of(kind, Description(place))
 
 
-@cache
+@lru_cache(RECORDS)
 def _record_of(kind: Kind, place: Description) -> KindRecord:
     if hasattr(kind.element, "compiled_terms"):
         return _by_loops(kind)
@@ -108,6 +112,7 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
     LOGGER.info("deriving %s", with_place(kind, place.words))
     with uncollected():
         record = _derived(kind)
+    forget()
     if entry:
         entries.write(of_installed(entry), packed(record))
     return record
@@ -136,7 +141,7 @@ def of_installed(entry: str) -> str:
     return entries.name_of("record", entry, installed_version("sympy"))
 
 
-@cache
+@lru_cache(RECORDS * len(TERM_SETS))
 def source_of(kind: Kind, term_set: str) -> str | None:
     """Return the source of a kind's kernel for a term set; None if the kind contributes nothing."""
     record = record_of(kind)
@@ -200,7 +205,7 @@ def _rare_source(kind: Kind, term_set: str) -> str:
     return source
 
 
-@cache
+@lru_cache(DERIVED)
 def _terms(kind: Kind) -> Derived:
     """Return the terms of a kind, which its record and its rare kernels share."""
     from .symbolic.derive import derive
@@ -218,6 +223,16 @@ def _by_loops(kind: Kind) -> KindRecord:
     terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
     sources = {name: terms.source(places) for name in TERM_SETS if (places := _places(terms, name))}
     return KindRecord(0, 0, [], [], [], dict(terms.patterns), sources, None, [], [], [])
+
+
+def forget() -> None:
+    """Remove expressions from the caches of SymPy, whose reuse by other kinds is rare; those of a flexible body take 20 MB."""
+    from sympy.core.cache import clear_cache
+
+    from .symbolic.read import is_ready
+
+    clear_cache()
+    is_ready.cache_clear()
 
 
 def _derived(kind: Kind) -> KindRecord:

@@ -23,6 +23,7 @@ class Face(NamedTuple):
     nodes: np.ndarray  # of int, shape (k,)
     values: np.ndarray  # shape (k, points): shape functions of these nodes
     normals: np.ndarray  # shape (points, 3): out of the element, with the length of the weight, m^2
+    of_shell: bool = False
 
 
 def nodal_areas(model: FiniteElements, nodes: np.ndarray) -> np.ndarray:
@@ -49,11 +50,11 @@ def unit_loads(model: FiniteElements, nodes: np.ndarray, outside: np.ndarray | N
     faces = list(_faces(model, nodes))
     if not faces:
         raise InputError("found no face of an element between its nodes, expected a surface of a mesh")
-    if model.shell is not None:
-        signs = [_outward(face, outside, hand) for face in faces]
-        _check_normals(faces, signs, outside is not None)
-        faces = [face._replace(normals=face.normals * sign) for face, sign in zip(faces, signs, strict=True)]
-    for face in faces:
+    shells = [face for face in faces if face.of_shell]
+    signs = [_outward(face, outside, hand) for face in shells]
+    _check_normals(shells, signs, outside is not None)
+    shells = [face._replace(normals=face.normals * sign) for face, sign in zip(shells, signs, strict=True)]
+    for face in (*(face for face in faces if not face.of_shell), *shells):
         sizes = np.linalg.norm(face.normals, axis=1)
         loads = np.concatenate([-face.normals[:, :, None], sizes[:, None, None] * np.eye(3)], axis=2)
         found[face.nodes, :DISPLACEMENTS] += np.einsum("np,pal->nal", face.values, loads)
@@ -91,14 +92,16 @@ def _check_normals(faces: list[Face], signs: list[float], stated: bool) -> None:
 
 
 def _faces(model: FiniteElements, nodes: np.ndarray) -> Iterator[Face]:
-    """Yield the faces on the surface of solids, or the shells, all of whose nodes are among some nodes."""
+    """Yield the faces on the surface of solids without those under shells, and the shells, all of whose nodes are among some nodes."""
     chosen = np.zeros(len(model.nodes), dtype=bool)
     chosen[nodes] = True
-    if model.shell is not None:
-        yield from _shells(model, chosen)
-        return
+    shells = list(_shells(model, chosen))
+    yield from shells
+    at_nodes: dict[int, list[set[int]]] = {}
+    for shell in shells:
+        at_nodes.setdefault(int(shell.nodes.min()), []).append(set(shell.nodes.tolist()))
     sharing: dict[tuple[int, ...], list[Face]] = {}
-    for kind, cells in model.cells.items():
+    for kind, cells in model.solid_cells.items():
         element = ELEMENTS[kind]
         for corners in (*element.shape.triangles, *element.shape.quadrilaterals):
             points, along, weights = face_rule(element.shape.corners[list(corners)])
@@ -113,13 +116,15 @@ def _faces(model: FiniteElements, nodes: np.ndarray) -> Iterator[Face]:
                 face = Face(cell[own], values[own], normals)
                 sharing.setdefault(tuple(sorted(cell[list(corners)].tolist())), []).append(face)
     for faces in sharing.values():
-        if len(faces) == 1:  # others are within the body
+        around = set(faces[0].nodes.tolist())
+        is_covered = any(shell <= around for node in around for shell in at_nodes.get(node, ()))
+        if len(faces) == 1 and not is_covered:  # others are within the body
             yield faces[0]
 
 
 def _shells(model: FiniteElements, chosen: np.ndarray) -> Iterator[Face]:
     """Yield the shells, each as the triangles along both diagonals with half of their areas, by the order of its nodes."""
-    for kind, cells in model.cells.items():
+    for kind, cells in model.shell_cells.items():
         for cell in cells[chosen[cells].all(axis=1)]:
             corners = np.array(DIVISION[kind])
             places = model.nodes[cell][corners]
@@ -127,4 +132,4 @@ def _shells(model: FiniteElements, chosen: np.ndarray) -> Iterator[Face]:
             normals = share * np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
             values = np.zeros((len(cell), len(corners)))
             np.add.at(values, (corners, np.arange(len(corners))[:, None]), 1 / 3)
-            yield Face(cell, values, normals)
+            yield Face(cell, values, normals, of_shell=True)

@@ -239,11 +239,11 @@ def _of_mapping(described: type[Described], found: object, info: ValidationInfo)
 class FlexibleBody(Described):
     """Flexible body: a finite element model with interfaces, reduced by the Hurty-Craig-Bampton method.
 
-    A mesh needs a material; its elements are solids, or shells with a thickness.
+    A mesh needs a material; its elements are solids, shells with a thickness, or both.
     """
 
     mesh: str | None = Field(
-        None, description="file of a mesh of tetrahedra, hexahedra, wedges or pyramids, or of shells"
+        None, description="file of a mesh of tetrahedra, hexahedra, wedges or pyramids, of shells, or of both"
     )
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
@@ -255,7 +255,7 @@ class FlexibleBody(Described):
         None, description="of the shells of a mesh, m, or stretch of a mesh of solids along its thickness"
     )
     thicknesses: dict[str, si.PositiveLength] | None = Field(
-        None, description="thicknesses by groups of the mesh's shells, m, in place of one thickness"
+        None, description="thicknesses by groups of the mesh's shells, m; with solids, other surfaces are groups only"
     )
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     surfaces: dict[str, Surface] = Field(

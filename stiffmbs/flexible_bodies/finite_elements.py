@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
-from .shells.shell import Shell
+from .shells.shell import DIVISION, Shell
 from .solid import Solid
 
 DISPLACEMENTS: Final = 3
@@ -38,8 +38,23 @@ class FiniteElements:
     # of int, shape (n,), optional: increasing numbers by which the file names the nodes; from 0 without them
     numbers: np.ndarray | None = None
     parts: str = ""  # names of parts of one material to which the file may give several
+    unused: str = ""  # names of statements and elements of the file that are not used
     components: int = DISPLACEMENTS  # of a node: three displacements, or six with its rotation vector
     shell: Shell | None = None  # elements of shells: inertia of rotations
+
+    @property
+    def solid_cells(self) -> dict[str, np.ndarray]:
+        """Nodes of the solids by kinds of elements."""
+        return {kind: own for kind, own in self.cells.items() if kind not in DIVISION or self.shell is None}
+
+    @property
+    def shell_cells(self) -> dict[str, np.ndarray]:
+        """Nodes of the shells by kinds of elements."""
+        return {kind: own for kind, own in self.cells.items() if kind in DIVISION and self.shell is not None}
+
+    def turns(self, nodes: np.ndarray) -> bool:
+        """Return True if one of some nodes belongs to a shell, so that its rotation can be held."""
+        return self.shell is not None and bool(np.isin(nodes, self.shell.triangles).any())
 
     @property
     def has_stresses(self) -> bool:
@@ -162,6 +177,12 @@ class FiniteElements:
                 f"{motions[int(force.argmax())]}, expected none: the matrix must belong to the free body without "
                 "supports"
             )
+
+
+def displacements_of(of_nodes: np.ndarray) -> np.ndarray:
+    """Return the displacements of nodes from their six components, shapes (3 n, ...) and (6 n, ...)."""
+    count, rest = len(of_nodes) // (2 * DISPLACEMENTS), of_nodes.shape[1:]
+    return of_nodes.reshape(count, 2 * DISPLACEMENTS, *rest)[:, :DISPLACEMENTS].reshape(DISPLACEMENTS * count, *rest)
 
 
 def rigid_motions(points: np.ndarray, components: int) -> np.ndarray:

@@ -66,11 +66,11 @@ def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None
         if interface.kind == POINT:
             if len(nodes) > 1:
                 raise InputError(f"interfaces.{name}: found {len(nodes)} nodes, expected one for type: point")
-        elif interface.kind == AVERAGE or model.components == DISPLACEMENTS:
+        elif interface.kind == AVERAGE or not model.turns(nodes):
             extent = np.linalg.svd(model.nodes[nodes] - model.nodes[nodes].mean(axis=0), compute_uv=False)
             if len(nodes) < 3 or extent[1] <= PRECISION * extent[0]:
                 count = f"{len(nodes)} node{'s' if len(nodes) > 1 else ''}{' on one line' if len(nodes) > 1 else ''}"
-                also = " or type: rigid" if model.components > DISPLACEMENTS else ""
+                also = " or type: rigid" if model.turns(nodes) else ""
                 raise InputError(
                     f"interfaces.{name}: found {count}, expected three or more that are not on one line, "
                     f"or one with type: point{also}"

@@ -113,16 +113,16 @@ def element_groups(mesh: meshio.Mesh, kind: str, what: str) -> dict[str, np.ndar
     return {name: np.concatenate(parts) for name, parts in found.items()}
 
 
-def parts_of(path: Path, mesh: meshio.Mesh, groups: Sequence[Mapping[str, np.ndarray]], what: str) -> str:
+def parts_of(path: Path, mesh: meshio.Mesh, groups: Sequence[Mapping[str, np.ndarray]], whats: Sequence[str]) -> str:
     """Return the names of parts that may have materials of their own; empty if there are fewer than two.
 
     These are the materials of the sections of an Abaqus or Nastran file, or physical groups of Gmsh that share no element.
-    `groups`: elements of each group, by kinds of elements. `what`: `SOLIDS` or `SHELLS`.
+    `groups`: elements of each group, by kinds of elements. `whats`: of `SOLIDS` and `SHELLS`.
     """
-    parts = materials_of_sections(path, what)
+    parts = list(dict.fromkeys(part for what in whats for part in materials_of_sections(path, what)))
     if PHYSICAL in mesh.cell_data:
         names = dict.fromkeys(name for of_kind in groups for name in of_kind)
-        parts = [name for name in names if name in mesh.field_data or name.startswith(UNNAMED[what][PHYSICAL])]
+        parts = [name for name in names if name in mesh.field_data or name.startswith(UNNAMED[SOLIDS][PHYSICAL])]
         for of_kind in groups:
             elements = np.concatenate([of_kind.get(name, np.empty(0, dtype=np.int64)) for name in parts])
             if len(np.unique(elements)) < len(elements):

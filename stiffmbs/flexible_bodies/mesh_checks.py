@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from .shapes import ELEMENTS
+from .shells.welds import edges_on_solids
 from .solid import Block
 
 FLAT = 1e-9
@@ -87,21 +88,33 @@ def _rows(cells: np.ndarray, between: tuple[int, ...], node: np.ndarray) -> np.n
     return np.column_stack([padded, node])
 
 
-def check_connected(cells: Mapping[str, np.ndarray]) -> None:
-    """Refuse parts that share no face of an element: they could rotate about their common corners and edges."""
+def check_connected(cells: Mapping[str, np.ndarray], shells: Mapping[str, np.ndarray]) -> None:
+    """Refuse parts that could rotate about common corners and edges: solids share faces, and shells edges with others.
+
+    `cells`, `shells`: nodes of solids and shells by kinds.
+    """
     first, rows = 0, []
     for kind, of_kind in cells.items():
         shape, numbers = ELEMENTS[kind].shape, first + np.arange(len(of_kind))
         for face in (*shape.triangles, *shape.quadrilaterals):
             rows.append(_rows(of_kind, face, numbers))
         first += len(of_kind)
-    faces = np.concatenate(rows)
-    _, own = np.unique(faces[:, :4], axis=0, return_inverse=True)
-    own = own.ravel()
-    graph = coo_array((np.ones(len(faces)), (faces[:, 4], first + own)), shape=(first + len(own),) * 2)
+    solids = first
+    for own in shells.values():
+        numbers = first + np.arange(len(own))
+        rows += [_rows(own, (k - 1, k), numbers) for k in range(own.shape[1])]
+        first += len(own)
+    common = np.concatenate(rows)
+    _, place = np.unique(common[:, :4], axis=0, return_inverse=True)
+    of_shells, of_solids = edges_on_solids(shells, cells).T
+    ends = np.concatenate([common[:, 4], solids + of_shells]), np.concatenate([first + place.ravel(), of_solids])
+    graph = coo_array((np.ones(len(ends[0])), ends), shape=(first + len(place),) * 2)
     parts = len(np.unique(connected_components(graph, directed=False)[1][:first]))
     if parts > 1:
-        raise InputError(f"found {parts} parts that are not connected by faces of elements, expected one body")
+        of_others = "edges of elements" if not cells else "faces of elements" + " or edges of shells" * bool(shells)
+        raise InputError(
+            f"found {parts} parts{' of shells' * (not cells)} that are not connected by {of_others}, expected one body"
+        )
 
 
 def _check_faces(cells: Mapping[str, np.ndarray]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -22,7 +23,20 @@ ENDLESS = {".dat", ".tec", ".ele", ".node", ".off", ".ply", ".mdpa"}
 file."""
 SETS = re.compile(r"\*(NSET|ELSET)\b", re.IGNORECASE)
 SAME_SURFACE = {"CPS6": "CPE6", "CPS8": "S8R", "M3D9": "S9R5"}
+CURVED = {"CTRIA6": (6, 1), "CQUAD8": (8, 5)}
+"""Nodes of the shells of Nastran of second order, and the place of their offset among the following fields."""
 GMSH_SURFACES = re.compile(rf"^(\*ELEMENT\s*,\s*TYPE\s*=\s*)({'|'.join(SAME_SURFACE)})\b", re.IGNORECASE)
+USED_OF_ABAQUS = {
+    "*NODE", "*ELEMENT", "*NSET", "*ELSET", "*HEADING", "*INCLUDE", "*PART", "*END PART", "*ASSEMBLY", "*END ASSEMBLY", "*INSTANCE",
+    "*END INSTANCE", "*PREPRINT",
+}  # fmt: skip
+"""Keywords of Abaqus that state the mesh, or nothing about it."""
+LINES_OF_ABAQUS = ("B2", "B3", "T2D", "T3D", "PIPE", "FRAME")
+"""Beginnings of the types of elements along lines."""
+USED_OF_NASTRAN = (
+    "GRID", "CTETRA", "CHEXA", "CPENTA", "CPYRA", "CTRIA", "CQUAD", "ENDDATA", "PARAM", "INCLUDE", "CEND", "BEGIN", "SOL", "SET",
+)  # fmt: skip
+"""Beginnings of the entries of Nastran that state the mesh, or nothing about it."""
 NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
 
 
@@ -64,7 +78,7 @@ def _without_angles(lines: Iterable[str]) -> Iterator[str]:
     The reader takes angles of materials and offsets for nodes.
     """
     shell = ""
-    for line in lines:
+    for line in _curved_in_short(lines):
         card = line[:8].partition(",")[0].strip().upper()
         if shell and (line.startswith(("+", ",")) or (line.strip() and not line[:8].strip())):  # the rest of the card
             if NOT_ZERO.search(line[8:] if "," not in line else line.partition(",")[2]):
@@ -80,6 +94,42 @@ def _without_angles(lines: Iterable[str]) -> Iterator[str]:
                 )
             line = ",".join(fields[:kept]) if "," in line else line[: 8 * kept]
         yield line
+
+
+def _curved_in_short(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the lines of a Nastran file, shells of second order with their nodes alone. Raises InputError for offsets and nodal thicknesses."""
+    fields: list[str] = []
+    for line in (*lines, ""):
+        card = line[:8].partition(",")[0].strip().upper()
+        own = line.split(",") if "," in line else [line[k : k + 8] for k in range(0, 72, 8)]
+        if fields and (line.startswith(("+", ",")) or (line.strip() and not line[:8].strip())):
+            fields += own[1:9] + [""] * (9 - len(own))
+            continue
+        if fields:
+            yield from _nodes_of_curved(fields)
+        fields = own[:9] + [""] * (9 - len(own)) if card in CURVED else []
+        if not fields:
+            yield line
+
+
+def _nodes_of_curved(fields: list[str]) -> Iterator[str]:
+    """Yield the lines of a shell of second order with its nodes alone. Raises InputError if it has an offset, or lacks a node."""
+    name, number, *more = (field.strip() for field in fields)
+    count, offset = CURVED[name.upper()]
+    nodes, rest = more[1 : 1 + count], more[1 + count :]
+    if not all(nodes) or len(nodes) < count:
+        raise InputError(f"found {name} {number} without a node on each edge, expected {count} nodes")
+    if len(rest) > offset and NOT_ZERO.match(rest[offset]):
+        raise InputError(
+            f"found {name} {number} with an offset of {rest[offset]}, expected nodes in the middle surface"
+        )
+    angle = 0 if offset == 1 else offset - 1
+    if any(NOT_ZERO.match(field) for k, field in enumerate(rest) if k not in (angle, offset)):
+        raise InputError(f"found {name} {number} with thicknesses at its nodes, expected one thickness of each element")
+    written = [name, number, more[0], *nodes]
+    yield ",".join(written[:9]) + (",+" if len(written) > 9 else "")
+    if len(written) > 9:
+        yield "+," + ",".join(written[9:])
 
 
 def _without_sets(lines: Iterable[str]) -> Iterator[str]:
@@ -104,6 +154,29 @@ def materials_of_sections(path: Path, what: str) -> list[str]:
             if line[:6].upper() == f"P{what.upper()}":
                 found.append(f"MAT {_fields(line)[2].strip()}")
     return list(dict.fromkeys(found))
+
+
+def unused(path: Path) -> str:
+    """Return the statements of an Abaqus or Nastran file that are not used, and its beams; empty if there are none."""
+    suffix = path.suffix.lower()
+    if suffix == ABAQUS:
+        words = [line.upper().split(",") for line in _lines(path) if line.startswith("*")]
+        found = [first.strip() for first, *_ in words if first.strip() not in USED_OF_ABAQUS]
+        types = (
+            word.replace(" ", "").removeprefix("TYPE=")
+            for first, *rest in words
+            if first.strip() == "*ELEMENT"
+            for word in rest
+        )
+        found += [f"elements {kind}" for kind in types if kind.startswith(LINES_OF_ABAQUS)]
+    elif suffix in NASTRAN:
+        text = path.read_text(encoding="utf-8", errors="replace").rpartition(BULK)[2]
+        cards = (line[:8].split(",")[0].strip(" *").upper() for line in text.splitlines())
+        found = [card for card in cards if card[:1].isalpha() and not card.startswith(USED_OF_NASTRAN)]
+    else:
+        return ""
+    counts = Counter(found)
+    return ", ".join(f"{name} ({count})" if count > 1 else name for name, count in counts.items())
 
 
 def _fields(line: str) -> list[str]:

@@ -23,7 +23,7 @@ def mirrored(model: FiniteElements, signs: np.ndarray) -> FiniteElements:
     nodes, cells, solid, shell = model.nodes * signs, dict(model.cells), model.solid, model.shell
     if solid is not None:
         order = {block.kind: _order(block.kind, determinant) for block in solid.blocks}
-        cells = {kind: own[:, order[kind]] for kind, own in cells.items()}
+        cells |= {kind: own[:, order[kind]] for kind, own in model.solid_cells.items()}
         blocks = (replace(block, places=nodes, nodes=block.nodes[order[block.kind]]) for block in solid.blocks)
         solid = Solid(tuple(blocks))
     if shell is not None:

@@ -74,6 +74,7 @@ class ReducedBody:
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
     elements: str  # types of the elements of a mesh, in the words of meshio; empty for matrices
     parts: str  # names of parts of one material to which the file may give several; empty if there are none
+    unused: str  # names of statements and elements of the file that are not used; empty if there are none
     components: int  # of a node in the modes: three displacements, or six with its rotation
     coarseness: (
         float  # square of the side of elements over radius and thickness of shells with two curvatures; zero for others
@@ -106,6 +107,11 @@ class ReducedBody:
             found.append(
                 f"the file of its mesh tells apart {self.parts}, which all have the one material of the description; "
                 "'materials' gives each group of elements its own"
+            )
+        if self.unused:
+            found.append(
+                f"the file of its mesh has {self.unused}, which are not used: materials, thicknesses, supports and loads are those of "
+                "the description and of the scene"
             )
         if self.coarseness > COARSE:
             found.append(
@@ -218,8 +224,8 @@ def reduce(
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
         *_of_loads(model, centre, modes, loads), second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
-        model.parts, model.components,
-        0.0 if model.shell is None else coarseness(model.shell, model.cells.values()),
+        model.parts, model.unused, model.components,
+        0.0 if model.shell is None else coarseness(model.shell, model.shell_cells.values()),
     )  # fmt: skip
 
 

@@ -23,15 +23,37 @@ from typing import Final
 import numpy as np
 from scipy.linalg import eigh
 
-from .finite_elements import FiniteElements
+from .finite_elements import DISPLACEMENTS, FiniteElements, displacements_of
 from .interfaces import Interface
+from .shells.shell import COMPONENTS, Shell
 from .shells.stress import ShellStress
-from .solid import InitialStress
+from .solid import InitialStress, Solid
 from .static_solver import StaticSolver
 
 LOGGER = logging.getLogger(__name__)
 RIGID_MOTIONS: Final = 6
-Stress = InitialStress | ShellStress
+
+
+class StressOfBoth:
+    """Work of the stress of solids and shells of one mesh on their strains of second order."""
+
+    def __init__(self, solid: Solid, shell: Shell) -> None:
+        self._solid, self._shell = InitialStress(solid), ShellStress(shell)
+
+    def works(self, displacements: np.ndarray, modes: np.ndarray) -> np.ndarray:
+        """Return the work of the stress of displacements, shape (6 n, k), by modes, shape (6 n, m), as (k, m, m)."""
+        of_solids = self._solid.works(displacements_of(displacements), displacements_of(modes))
+        return self._shell.works(displacements, modes) + of_solids
+
+    def second_order_force(self, displacement: np.ndarray) -> np.ndarray:
+        """Return the forces on all components of the strains of second order of a displacement, shape (6 n,)."""
+        found = self._shell.second_order_force(displacement)
+        of_solids = self._solid.second_order_force(displacements_of(displacement))
+        found.reshape(-1, COMPONENTS)[:, :DISPLACEMENTS] += of_solids.reshape(-1, DISPLACEMENTS)
+        return found
+
+
+Stress = InitialStress | ShellStress | StressOfBoth
 """Work of the stress of a body on strains of second order."""
 
 
@@ -92,7 +114,7 @@ def displacement_of_second_order(
 def stress_of(model: FiniteElements) -> Stress:
     """Return what computes the work of stress on strains of second order."""
     if model.shell is not None:
-        return ShellStress(model.shell)
+        return ShellStress(model.shell) if model.solid is None else StressOfBoth(model.solid, model.shell)
     assert model.solid is not None
     return InitialStress(model.solid)
 

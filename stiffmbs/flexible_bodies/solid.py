@@ -69,7 +69,7 @@ class Solid:
     @cached_property
     def pairs(self) -> NodePairs:
         """Pairs of nodes that share an element."""
-        return NodePairs([block.nodes for block in self.blocks])
+        return NodePairs([block.nodes for block in self.blocks], len(self.blocks[0].places))
 
     def stiffness(self) -> csr_array:
         """Return the stiffness matrix, shape (3 n, 3 n), N/m.
@@ -89,7 +89,8 @@ class Solid:
                 same = np.einsum("enama->enm", products)[..., None, None] * np.eye(3)
                 own = lame * products.swapaxes(2, 3) + shear * (products.transpose(0, 1, 3, 4, 2) + same)
                 self.pairs.add(sums, number, part, own)
-        return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts)))
+        size = 3 * self.pairs.count
+        return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts), shape=(size, size)))
 
     def mass(self) -> csr_array:
         """Return the consistent mass matrix, shape (3 n, 3 n), kg."""
@@ -153,18 +154,18 @@ class InitialStress:
 class NodePairs:
     """Pairs of nodes that share an element: the entries of the assembled matrices.
 
-    `nodes`: nodes of the elements of each block, shape (nodes of an element, elements). `starts`, shape (n + 1,), and
-    `columns`, shape (pairs,): second nodes of the pairs, by first nodes (the format CSR).
+    `nodes`: nodes of the elements of each block, shape (nodes of an element, elements). `count`: number n of the nodes of the body,
+    some of which may have no element. `starts`, shape (n + 1,), and `columns`, shape (pairs,): second nodes of the pairs, by first nodes (the format CSR).
     """
 
-    def __init__(self, nodes: Sequence[np.ndarray]) -> None:
-        self._count = 1 + max(int(each.max()) for each in nodes)
-        every = [(each.T[:, :, None] * self._count + each.T[:, None, :]).reshape(each.shape[1], -1) for each in nodes]
+    def __init__(self, nodes: Sequence[np.ndarray], count: int) -> None:
+        self.count = count
+        every = [(each.T[:, :, None] * self.count + each.T[:, None, :]).reshape(each.shape[1], -1) for each in nodes]
         pairs, place = np.unique(np.concatenate([each.ravel() for each in every]), return_inverse=True)
         ends = np.cumsum([each.size for each in every])[:-1]
         self._places = [part.reshape(own.shape) for part, own in zip(np.split(place.ravel(), ends), every, strict=True)]
-        first, self.columns = np.divmod(pairs, self._count)
-        self.starts = np.concatenate([[0], np.cumsum(np.bincount(first, minlength=self._count))])
+        first, self.columns = np.divmod(pairs, self.count)
+        self.starts = np.concatenate([[0], np.cumsum(np.bincount(first, minlength=self.count))])
 
     def zeros(self, shape: tuple[int, ...]) -> np.ndarray:
         """Return a block of zeros for each pair."""
@@ -188,4 +189,4 @@ class NodePairs:
         for block, (left, right) in enumerate(factors):
             for part in self.parts(block):
                 self.add(sums, block, part, left[part] @ right[part].swapaxes(1, 2))
-        return csr_array((sums, self.columns, self.starts), shape=(self._count, self._count))
+        return csr_array((sums, self.columns, self.starts), shape=(self.count, self.count))

@@ -144,8 +144,12 @@ class StaticSolver:
         return squares, found
 
     def _massless(self, mass: csr_array) -> int:
-        """Return the largest number of rotations without mass: one at each node of a shell."""
-        return 0 if self._model.components == DISPLACEMENTS else mass.shape[0] // self._model.components
+        """Return the largest number of rotations without mass: one at each node of a shell, all of a node of solids alone."""
+        if self._model.components == DISPLACEMENTS:
+            return 0
+        nodes, zeros = self.free // self._model.components, mass.diagonal() == 0
+        alone = np.bincount(nodes[zeros], minlength=len(self._model.nodes))
+        return int(np.maximum(alone, np.bincount(nodes, minlength=len(alone)) > 0).sum())
 
 
 def _apart(points: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import InputError
-from .finite_elements import FiniteElements
+from .finite_elements import DISPLACEMENTS, FiniteElements, displacements_of
 from .shells.surfaces import TENSOR, Surfaces, surfaces_of
 from .solid import Solid
 
@@ -44,16 +44,56 @@ class NodalStresses:
                     np.add.at(
                         own[:, k], block.nodes, counted * stress[a, b].T
                     )  # (elements, nodes) by (nodes, elements)
-        return found / self._elements[:, None]
+        return found / np.maximum(self._elements, 1)[:, None]
 
 
-def stress_points(model: FiniteElements) -> NodalStresses | Surfaces:
-    """Return the points of a model that have stresses: the nodes of solids, or both surfaces of shells at each node.
+class PointsOfBoth:
+    """Points with stresses of a mesh with solids and shells: nodes of the solids, and both surfaces of the shells.
+
+    - `nodes` of int, shape (points,): node of each point, not decreasing.
+    - `of_solids`, `of_surfaces` of int: point of each node, -1 for those of shells alone, and of each point of the surfaces.
+    """
+
+    def __init__(self, solid: Solid, surfaces: Surfaces, count: int) -> None:
+        self._solid, self.surfaces = NodalStresses(solid, count), surfaces
+        self._inside = np.unique(np.concatenate([block.nodes.ravel() for block in solid.blocks]))
+        every = np.concatenate([self._inside, surfaces.nodes])
+        self._order = np.argsort(every, kind="stable")
+        self.nodes = every[self._order]
+        place = np.empty(len(every), dtype=int)
+        place[self._order] = np.arange(len(every))
+        self.of_solids = np.full(count, -1)
+        self.of_solids[self._inside], self.of_surfaces = np.split(place, [len(self._inside)])
+
+    def stresses(self, displacements: np.ndarray, first_order: np.ndarray | None = None) -> np.ndarray:
+        """Return the stresses of displacements and rotations, shape (6 n, k), as `NodalStresses.stresses`."""
+        second = None if first_order is None else displacements_of(first_order)
+        of_solids = self._solid.stresses(displacements_of(displacements), second)[:, self._inside]
+        of_shells = self.surfaces.stresses(displacements, first_order)
+        return np.concatenate([of_solids, of_shells], axis=1)[:, self._order]
+
+    def displacements(self, of_nodes: np.ndarray) -> np.ndarray:
+        """Return the displacements of the points, shape (k, points, 3), by those of the nodes, shape (6 n, k)."""
+        of_solids = np.moveaxis(displacements_of(of_nodes).reshape(-1, DISPLACEMENTS, of_nodes.shape[1]), 2, 0)
+        both = np.concatenate([of_solids[:, self._inside], self.surfaces.displacements(of_nodes)], axis=1)
+        return both[:, self._order]  # type: ignore[no-any-return]
+
+    def arms(self) -> np.ndarray:
+        """Return the vectors from the nodes to the points, m, shape (points, 3); zero for those of solids."""
+        return np.concatenate([np.zeros((len(self._inside), 3)), self.surfaces.arms])[self._order]  # type: ignore[no-any-return]
+
+
+StressPoints = NodalStresses | Surfaces | PointsOfBoth
+
+
+def stress_points(model: FiniteElements) -> StressPoints:
+    """Return the points of a model that have stresses: the nodes of solids, and both surfaces of shells at each node.
 
     Raises InputError if the model has no shape functions.
     """
     if model.shell is not None:
-        return surfaces_of(model.shell)
+        surfaces = surfaces_of(model.shell)
+        return surfaces if model.solid is None else PointsOfBoth(model.solid, surfaces, len(model.nodes))
     if model.solid is None:
         raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
     return NodalStresses(model.solid, len(model.nodes))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.coordinates import FIXED, Coordinates
 from ..compile.group import Group
 from ..compile.kind import Kind
-from ..compile.record import record_of
+from ..compile.record import RECORDS, record_of
 from ..compile.state import State
 from ..compile.system import System, Term
 from ..compile.terms import TERM_SETS
@@ -211,7 +211,7 @@ class _Summands(NamedTuple):
     on: np.ndarray
 
 
-@cache
+@lru_cache(RECORDS)
 def _summands(kind: Kind) -> _Summands:
     listed = [(k, *summand) for k, summands in enumerate(record_of(kind).variation) for summand in summands]
     products = list(dict.fromkeys(tuple(map(tuple, factors)) or ((-1,),) for _, factors, _, _ in listed))

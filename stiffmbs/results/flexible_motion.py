@@ -16,8 +16,7 @@ from ..errors import InputError, needs
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody, static_solver
 from ..flexible_bodies.second_order import displacement_of_second_order, stress_of
-from ..flexible_bodies.shells.surfaces import Surfaces
-from ..flexible_bodies.stress import NodalStresses, principal_stresses, stress_points, von_mises
+from ..flexible_bodies.stress import StressPoints, principal_stresses, stress_points, von_mises
 from ..reading.did_you_mean import did_you_mean
 
 if TYPE_CHECKING:
@@ -169,7 +168,7 @@ class FlexibleMotion:
         return largest
 
     @cached_property
-    def _points(self) -> NodalStresses | Surfaces:
+    def _points(self) -> StressPoints:
         """Points with stresses."""
         return stress_points(self.model)
 

@@ -12,7 +12,7 @@ from stiffmbs.compile.inputs import ends, features, pieces, table_ranges, zeros
 from stiffmbs.compile.symbolic import shared_parts, symbols, variation
 from stiffmbs.results.joint_angles import JointAngles
 from stiffmbs.solve import suspect
-from tests.decisions.common import BELOW, Record, nothing, reach, reached
+from tests.decisions.common import BELOW, Record, executed, nothing, reach, reached
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
 
@@ -333,6 +333,8 @@ DECISIONS = {
     "compile.inputs.zeros:SHORTEST_STRETCH": lambda: len(stretches(first_alone)),
     "compile.inputs.zeros:MOST_STRETCHES": lambda: len(stretches(every_one)),
     "compile.law_intervals:FEW": largest_period_with_turns,
+    "compile.record:DERIVED": lambda: executed("compile.record")._terms.cache_info().maxsize,
+    "compile.record:RECORDS": lambda: executed("compile.record")._record_of.cache_info().maxsize,
     "compile.law_intervals:CLOSE": overlap_of_a_breakpoint,
     "compile.law_intervals:NOTHING": largest_departure_from_a_tangent,
     "compile.state:LEFT_OPEN": largest_open_gap,
@@ -357,7 +359,7 @@ EXPECTED = {
     "compile.inputs.pieces:SAMPLE": 64, "compile.inputs.pieces:QUANTILE": 10.0, "compile.inputs.pieces:URGENT": 24,
     "compile.inputs.table_ranges:FLAT": 155, "compile.inputs.table_ranges:CONTINUOUS": 27,
     "compile.inputs.zeros:FIRST_STRETCHES": 64, "compile.inputs.zeros:SHORTEST_STRETCH": 35,
-    "compile.inputs.zeros:MOST_STRETCHES": 15, "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001,
+    "compile.inputs.zeros:MOST_STRETCHES": 15, "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001, "compile.record:DERIVED": 4, "compile.record:RECORDS": 128,
     "compile.law_intervals:NOTHING": 119, "compile.state:LEFT_OPEN": 27, "compile.symbolic.shared_parts:MOST_FACTORS": 5,
     "compile.symbolic.symbols:STEEP": 8, "compile.symbolic.variation:MOST_SUMMANDS": 100,
     "compile.symbolic.variation:ORDER_ONE": 8, "elements.turns:INITIAL_COUNT": 119, "compile.table_values:UNDEFINED": 111,

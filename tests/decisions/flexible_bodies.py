@@ -18,7 +18,7 @@ from stiffmbs.flexible_bodies import (
     static_solver,
 )
 from stiffmbs.flexible_bodies.shells import checks as shell_checks
-from stiffmbs.flexible_bodies.shells import shell, stress, surfaces
+from stiffmbs.flexible_bodies.shells import shell, stress, surfaces, welds
 from stiffmbs.results import flexible_motion
 from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -106,7 +106,11 @@ def lowest_elastic_frequency():
         ):  # fmt: skip
             return refused(
                 lambda: reduction.reduce(
-                    Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", components=3, shell=None), [], 1
+                    Record(
+                        mass=eye, rigid_modes=lambda _: eye, cells={}, parts="", unused="", components=3, shell=None
+                    ),
+                    [],
+                    1,
                 )
             )
 
@@ -167,9 +171,9 @@ def most_warped_quadrilateral():
 def parts_of_a_shell():
     one = shell.Shell(*(np.zeros((10**4, *shape)) for shape in ((3,), (3,), (3, 3), (), (), (), ())))
     parts = []
-    pairs = Record(zeros=lambda _: reached, add=lambda *_: parts.append(1), columns=0, starts=0)
+    pairs = Record(zeros=lambda _: reached, add=lambda *_: parts.append(1), columns=0, starts=0, count=0)
     with (
-        patch.multiple(shell, bsr_array=nothing, csr_array=nothing),
+        patch.multiple(shell, bsr_array=lambda *_, **__: 0, csr_array=nothing),
         patch.multiple(shell.Shell, pairs=pairs, _of_triangles=nothing),
     ):
         one.stiffness()
@@ -219,13 +223,24 @@ def sharpest_fold():
 
 def coarsest_shell_without_a_note():
     def is_noted(square):
-        body = Record(coarseness=square, elements="quad", parts="")
+        body = Record(coarseness=square, elements="quad", parts="", unused="")
         return bool(reduction.ReducedBody.notes.fget(body))
 
     return count_while(lambda square: not is_noted(0.1 * square), DOUBLES)
 
 
+def spring_of_a_rotation(node):
+    """Return the stiffness of the rotation of a node of a tetrahedron, on whose edge between nodes 0 and 1 a shell stands."""
+    nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, -1]], dtype=float)
+    material, ones = shell.ElementMaterials(np.ones(1), np.zeros(1), np.ones(1)), np.ones(1)
+    of = shell.of_elements(nodes, {"triangle": np.array([[0, 1, 4]])}, {"triangle": material}, {"triangle": ones})
+    body = solid.Solid((solid.Block("tetra", nodes, np.arange(4)[:, None], material),))
+    return float(welds.rotations(body, of)[6 * node + 3, 6 * node + 3])
+
+
 DECISIONS = {
+    "flexible_bodies.shells.welds:SOFT": lambda: spring_of_a_rotation(2),
+    "flexible_bodies.shells.welds:STIFF": lambda: spring_of_a_rotation(0),
     "flexible_bodies.reduction:COARSE": coarsest_shell_without_a_note,
     "flexible_bodies.shells.stress:KEPT": most_kept_triangles,
     "flexible_bodies.shells.surfaces:FOLD": sharpest_fold,
@@ -261,7 +276,7 @@ DECISIONS = {
     "flexible_bodies.static_solver:DEPENDENT": independent_shapes,
 }  # fmt: skip
 EXPECTED = {
-    "flexible_bodies.reduction:COARSE": 14,
+    "flexible_bodies.reduction:COARSE": 14, "flexible_bodies.shells.welds:SOFT": 4.21875e-07, "flexible_bodies.shells.welds:STIFF": 421.875,
     "flexible_bodies.shells.stress:KEPT": 20, "flexible_bodies.shells.surfaces:FOLD": 23, "results.flexible_motion:AT_ONCE": 8,
     "flexible_bodies.shells.shell:LEAST_DRILLING": 1 / 90, "flexible_bodies.shells.shell:WARPED": 18, "flexible_bodies.shells.shell:AT_ONCE": 4,
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,

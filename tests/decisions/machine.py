@@ -160,6 +160,7 @@ def farthest_rotation_by_series():
 
 
 DECISIONS = {
+    "compile.machine.compiler:SOURCES": lambda: executed("compile.machine.compiler").compiled_source.cache_info().maxsize,
     "compile.machine.object_code:INLINED": inlined_instructions,
     "compile.machine.geometry.common_normal:THINNER": stages_of_growth,
     "compile.machine.geometry.common_normal:STAGES": lambda: len(parts_of_a_normal()) - 1,
@@ -188,7 +189,7 @@ DECISIONS = {
     "compile.machine.native.rotation_vector:TERMS": lambda: rotation_vector._near_one(3.0, 0),
 }  # fmt: skip
 EXPECTED = {
-    "compile.machine.object_code:INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
+    "compile.machine.compiler:SOURCES": 1024, "compile.machine.object_code:INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
     "compile.machine.geometry.common_normal:STAGES": 16, "compile.machine.geometry.common_normal:MOST_STEPS": 60,
     "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
     "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,

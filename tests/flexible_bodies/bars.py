@@ -24,6 +24,9 @@ MASS = LENGTH * WIDTH * HEIGHT * DENSITY
 MIDDLES = {
     "hexahedron20": ("hexahedron", "01 12 23 30 45 56 67 74 04 15 26 37"),
     "hexahedron27": ("hexahedron", "01 12 23 30 45 56 67 74 04 15 26 37 0473 1265 0154 3762 0321 4567 01234567"),
+    "triangle6": ("triangle", "01 12 20"),
+    "quad8": ("quad", "01 12 23 30"),
+    "quad9": ("quad", "01 12 23 30 0123"),
     "wedge15": ("wedge", "01 12 20 34 45 53 03 14 25"),
     "wedge18": ("wedge", "01 12 20 34 45 53 03 14 25 0143 1254 2035"),
 }

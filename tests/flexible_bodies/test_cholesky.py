@@ -210,5 +210,5 @@ def test_columns_that_are_added_together():
 
 def test_elements_whose_matrices_are_computed_together():
     """Ten functions of three components: 900 numbers for each element, 80 MB in all."""
-    pairs = NodePairs([np.tile(np.arange(10)[:, None], 20_000)])
+    pairs = NodePairs([np.tile(np.arange(10)[:, None], 20_000)], 10)
     assert [part.stop for part in pairs.parts(0)] == [11_111, 22_222]

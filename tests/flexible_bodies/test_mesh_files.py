@@ -12,6 +12,7 @@ from meshio._helpers import extension_to_filetypes
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.mesh import _as_vtk, _read, from_mesh
 from stiffmbs.flexible_bodies.mesh_files import for_reader
+from stiffmbs.flexible_bodies.reduction import reduce
 from stiffmbs.flexible_bodies.shapes import ELEMENTS as KINDS
 from tests.flexible_bodies.bars import STEEL, mesh_of_bar
 
@@ -197,6 +198,8 @@ def test_a_file_of_any_format_that_ends_early_is_read_or_refused(tmp_path, suffi
 
 
 ORDERS = {
+    ("hexahedron27", ".inp"): "01 12 23 30 45 56 67 74 04 15 26 37 01234567 0123 4567 0154 1265 2376 3740",
+    ("pyramid", ".inp"): "",
     ("hexahedron20", ".inp"): "01 12 23 30 45 56 67 74 04 15 26 37",
     ("hexahedron20", ".bdf"): "01 12 23 30 04 15 26 37 45 56 67 74",
     ("hexahedron20", ".msh"): "01 03 04 12 15 23 26 37 45 47 56 67",
@@ -214,6 +217,8 @@ WORDS = {
     "wedge15": ("C3D15", "CPENTA", 18),
     "tetra10": ("C3D10", "CTETRA", 11),
     "wedge18": ("", "", 13),
+    "hexahedron27": ("C3D27", "", 12),
+    "pyramid": ("C3D5", "", 7),
 }
 
 
@@ -240,7 +245,14 @@ def test_nodes_on_edges_are_in_the_order_of_the_file(tmp_path, kind, suffix):
         text = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(grid)}\n{nodes}$EndNodes\n"
         text += f"$Elements\n1\n1 {gmsh} 2 1 1 {' '.join(numbers)}\n$EndElements\n"
     found = read(tmp_path / f"a{suffix}", text)
-    volume = {"hexahedron20": 1.0, "wedge15": 0.5, "wedge18": 0.5, "tetra10": 1 / 6}[kind]
+    volume = {
+        "hexahedron20": 1.0,
+        "hexahedron27": 1.0,
+        "pyramid": 4 / 3,
+        "wedge15": 0.5,
+        "wedge18": 0.5,
+        "tetra10": 1 / 6,
+    }[kind]
     assert found.mass.sum() / 3 == pytest.approx(7850 * volume)
     (cells,) = found.cells.values()
     for k, between in enumerate(KINDS[kind].middles, len(corners)):
@@ -298,3 +310,14 @@ def test_parts_joined_at_a_corner_are_refused(tmp_path):
     meshio.Mesh(points, [("tetra", [[0, 1, 2, 3], [0, 5, 4, 6]])]).write(tmp_path / "a.vtu")
     with pytest.raises(InputError, match="found 2 parts that are not connected by faces"):
         from_mesh(tmp_path / "a.vtu", 1.0, STEEL)
+
+
+def test_statements_and_beams_that_are_not_used_are_listed(tmp_path):
+    more = "*Material, name=STEEL\n*Elastic\n2.1e5, 0.3\n*Boundary\n1, 1, 3\n*Boundary\n2, 1, 3\n*Element, type=B31\n9, 1, 2\n"
+    assert read(tmp_path / "a.inp", ABAQUS).unused == ""
+    found = read(tmp_path / "a.inp", ABAQUS + more)
+    assert found.unused == "*MATERIAL, *ELASTIC, *BOUNDARY (2), elements B31"
+    (note,) = (each for each in reduce(found, [], 1).notes if "not used" in each)
+    assert found.unused in note
+    more = "CBAR,8,2,1,2,0.,0.,1.\nSPC1,1,123,1\nRBE2,50,1,123456,2,3\n"
+    assert read(tmp_path / "a.bdf", nastran(more=more)).unused == "PSOLID, CBAR, SPC1, RBE2"

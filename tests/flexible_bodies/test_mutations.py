@@ -15,4 +15,4 @@ def test_damaged_meshes_and_matrices():
 
 
 def test_elements_folded_by_a_node_on_an_edge_are_refused():
-    assert "inverted or flat in places" in trial(154).detail
+    assert "inverted or flat in places" in trial(259).detail

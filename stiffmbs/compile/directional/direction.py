@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
 from ...errors import InputError
 from ..kind import Kind, with_place
-from ..machine.compiler import Description, compiled_source
+from ..machine.compiler import SOURCES, Description, compiled_source
 from ..machine.layout import packed
 from ..machine.linking import Compiled
 from ..machine.native.tables import DIRECTION
@@ -43,7 +43,7 @@ def unchanged(system: System) -> Numbers:
     return Numbers(tuple(np.zeros_like(group.numbers) for group in system.groups), frozenset(), np.zeros(system.n_u))
 
 
-@cache
+@lru_cache(SOURCES)
 def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Compiled | None:
     """Return the kernel of a kind's directional derivatives in a set of terms; None if it has none.
 

@@ -7,7 +7,7 @@ import logging
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple
@@ -66,12 +66,14 @@ class Source:
     level: int = FULL
 
 
+SOURCES = 1024
+"""Generated sources whose functions are kept in memory. A car has about 250."""
 FollowsFrom = tuple[Kind, *tuple[str, ...]]
 """Kind of an entry, and all texts that its content follows from besides the processor."""
 _UNNAMED = Description()
 
 
-@cache
+@lru_cache(SOURCES)
 def compiled_source(source: str, name: str, signature: str, of: Description = _UNNAMED, level: int = FULL) -> Compiled:
     """Compile a function from generated source, or load it from the cache.
 

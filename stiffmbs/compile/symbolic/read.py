@@ -55,7 +55,7 @@ def read(x: sp.Expr, note: Callable[[sp.Expr], None]) -> sp.Expr:
     expression = sp.sympify(x)
     if not isinstance(expression, sp.Expr):
         raise InputError(f"found {x!r}, expected an expression of SymPy or a number")
-    if _is_ready(expression):
+    if is_ready(expression):
         return expression
     for part in sp.preorder_traversal(expression):
         if part in NO_NUMBER:
@@ -65,11 +65,11 @@ def read(x: sp.Expr, note: Callable[[sp.Expr], None]) -> sp.Expr:
     return _read(expression, note)
 
 
-@lru_cache(maxsize=2**16)
-def _is_ready(x: sp.Basic) -> bool:
+@lru_cache(maxsize=2**14)
+def is_ready(x: sp.Basic) -> bool:
     """Return True if kernels support an expression unchanged; cached for shared subexpressions."""
     here = _is_plain(x) or _is_own(x)
-    return here and x not in NO_NUMBER and not isinstance(x, UNDONE) and all(map(_is_ready, x.args))
+    return here and x not in NO_NUMBER and not isinstance(x, UNDONE) and all(map(is_ready, x.args))
 
 
 def _is_plain(part: sp.Basic) -> bool:

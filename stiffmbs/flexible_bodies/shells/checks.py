@@ -1,20 +1,17 @@
-"""Checks of the shells of a mesh: areas, warped quadrilaterals, repeated elements, and edges that neighbours share."""
+"""Checks of the shells of a mesh: areas, warped quadrilaterals, repeated elements."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ...errors import InputError
 from ..mesh_checks import FLAT, check_repeated, refuse
 from .shell import DIVISION, QUADRILATERAL, TRIANGLE, WARPED, mean_normals
 
 
 def check_shells(nodes: np.ndarray, cells: Mapping[str, np.ndarray]) -> None:
-    """Refuse elements without an area, warped, concave or repeated ones, and parts without a common edge.
+    """Refuse elements without an area, and warped, concave or repeated ones.
 
     `cells`: nodes of the elements by kinds.
     """
@@ -25,7 +22,6 @@ def check_shells(nodes: np.ndarray, cells: Mapping[str, np.ndarray]) -> None:
         _check_warped(nodes, cells[QUADRILATERAL])
     if len(cells) > 1:
         _check_kinds(cells[TRIANGLE], cells[QUADRILATERAL])
-    _check_connected(cells)
 
 
 def _check_areas(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
@@ -62,22 +58,3 @@ def _check_kinds(triangles: np.ndarray, quadrilaterals: np.ndarray) -> None:
     _, own, count = np.unique(rows, axis=0, return_inverse=True, return_counts=True)
     on_others = count[own.ravel()][-len(triangles) :] > 1
     refuse(on_others, "triangles on quadrilaterals", triangles, "each part of the surface once")
-
-
-def _check_connected(cells: Mapping[str, np.ndarray]) -> None:
-    """Refuse parts that share no edge of an element."""
-    first, rows = 0, []
-    for own in cells.values():
-        numbers = first + np.arange(len(own))
-        for k in range(own.shape[1]):
-            rows.append(np.column_stack([np.sort(own[:, [k - 1, k]], axis=1), numbers]))
-        first += len(own)
-    edges = np.concatenate(rows)
-    _, own = np.unique(edges[:, :2], axis=0, return_inverse=True)
-    own = own.ravel()
-    graph = coo_array((np.ones(len(edges)), (edges[:, 2], first + own)), shape=(first + len(own),) * 2)
-    parts = len(np.unique(connected_components(graph, directed=False)[1][:first]))
-    if parts > 1:
-        raise InputError(
-            f"found {parts} parts of shells that are not connected by edges of elements, expected one body"
-        )

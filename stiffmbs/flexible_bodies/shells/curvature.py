@@ -27,7 +27,7 @@ def coarseness(shell: Shell, cells: Iterable[np.ndarray]) -> float:
         np.add.at(angles, node, shell.shares * np.arccos(np.clip(cosines, -1.0, 1.0)))
         np.add.at(size, node, areas)
         np.add.at(volume, node, areas * shell.thickness)
-    inside = np.setdiff1d(np.arange(len(shell.places)), _on_edges(cells))
+    inside = np.setdiff1d(shell.triangles, _on_edges(cells))
     if not len(inside):
         return 0.0
     turn = np.abs(2 * np.pi - angles[inside])

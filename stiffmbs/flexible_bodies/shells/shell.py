@@ -98,7 +98,7 @@ class Shell:
     @cached_property
     def pairs(self) -> NodePairs:
         """Pairs of nodes that share an element."""
-        return NodePairs([self.triangles.T])
+        return NodePairs([self.triangles.T], len(self.places))
 
     def stiffness(self) -> csr_array:
         """Return the stiffness matrix, shape (6 n, 6 n)."""
@@ -106,7 +106,8 @@ class Shell:
         for start in range(0, len(self.triangles), AT_ONCE):
             part = slice(start, start + AT_ONCE)
             self.pairs.add(sums, 0, part, self._of_triangles(part))
-        return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts)))
+        size = COMPONENTS * self.pairs.count
+        return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts), shape=(size, size)))
 
     def part(self, part: slice) -> Triangles:
         """Return some triangles with their strains."""

@@ -15,7 +15,7 @@ from ...flexible_bodies.finite_elements import FiniteElements
 from ...flexible_bodies.reduced import reduced_body
 from ...flexible_bodies.shapes import ELEMENTS
 from ...flexible_bodies.shells.surfaces import Surfaces
-from ...flexible_bodies.stress import deviatoric, stress_points
+from ...flexible_bodies.stress import PointsOfBoth, deviatoric, stress_points
 from ...model.model_data import ModelData
 from . import solids
 from .poses import Poses
@@ -42,6 +42,10 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
     if isinstance(stressed, Surfaces):
         faces, points = list(stressed.faces(model.cells)), model.nodes[stressed.nodes] + stressed.arms
         moved = stressed.displacements(reduced.modes)
+    elif isinstance(stressed, PointsOfBoth):
+        of_solids = [stressed.of_solids[face] for face in faces_of_solids(model)]
+        faces = of_solids + [stressed.of_surfaces[face] for face in stressed.surfaces.faces(model.shell_cells)]
+        points, moved = model.nodes[stressed.nodes] + stressed.arms(), stressed.displacements(reduced.modes)
     else:
         faces, points, moved = surface(model), model.nodes, np.moveaxis(reduced.displacements, -1, 0)
     if not faces:
@@ -66,10 +70,13 @@ def surface(model: FiniteElements) -> list[np.ndarray]:
 
     Faces of shells are their elements, in the order of the file.
     """
-    if model.shell is not None:
-        return [face for cells in model.cells.values() for face in cells]
+    return [face for cells in model.shell_cells.values() for face in cells] + faces_of_solids(model)
+
+
+def faces_of_solids(model: FiniteElements) -> list[np.ndarray]:
+    """Return the nodes around each face of the solids that belongs to one element only, as `surface`."""
     every: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
-    for kind, cells in model.cells.items():
+    for kind, cells in model.solid_cells.items():
         middles = model.nodes[cells].mean(axis=1)
         for face in ELEMENTS[kind].faces:
             every.setdefault(len(face), []).append((cells[:, list(face)], middles))

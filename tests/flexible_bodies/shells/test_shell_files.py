@@ -113,9 +113,11 @@ def test_solids_with_surfaces_are_read_as_before(tmp_path):
     expected, found = (from_mesh(tmp_path / name, 1e-3, STEEL) for name in ("bricks.vtu", "both.vtu"))
     assert (expected.stiffness != found.stiffness).nnz == 0 and found.components == 3
     with pytest.raises(
-        InputError, match=r"found a thickness of shells for a mesh with solids \(hexahedron\), expected none"
+        InputError, match=r"found one thickness for a mesh with solids \(hexahedron\), expected 'thicknesses' by groups"
     ):
         from_mesh(tmp_path / "both.vtu", 1e-3, STEEL, thickness=2e-3)
+    with pytest.raises(InputError, match="found a thickness of shells for a mesh of solids alone"):
+        from_mesh(tmp_path / "bricks.vtu", 1e-3, STEEL, thickness=2e-3)
 
 
 def _refused(tmp_path, cells, nodes=None, **changes):
@@ -141,7 +143,7 @@ def test_elements_that_are_no_shells_are_refused_in_a_sentence(tmp_path):
         "found 2 elements between the same nodes as others": ([("quad", quads), ("triangle", quads[:2, :3]), ("triangle", quads[:2, 2::-1])], nodes, {}),
         "found 1 triangles on quadrilaterals, the first with nodes": ([("quad", quads), ("triangle", quads[1:2, [3, 0, 1]])], nodes, {}),
         "found 2 parts of shells that are not connected by edges": ([("quad", quads[[0, 3]])], nodes, {}),
-        "found elements of the types quad, triangle6, expected shells of the types triangle, quad": ([("quad", quads), ("triangle6", np.hstack([quads, quads[:, :2]]))], nodes, {}),
+        "found elements of the types line, expected shells of the types triangle, quad, triangle6, quad8, quad9": ([("line", quads[:, :2])], nodes, {}),
         "thicknesses.lid: found no group of shell elements 'lid', expected one of the file (none)": ([("quad", quads)], nodes, {"thickness": None, "thicknesses": {"lid": 1e-3}}),
     }  # fmt: skip
     for expected, (own, points, changes) in cases.items():

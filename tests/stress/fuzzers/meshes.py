@@ -21,7 +21,7 @@ from stiffmbs.flexible_bodies.description import FlexibleBody, InterfaceOfNodes,
 from stiffmbs.flexible_bodies.mesh_files import for_reader
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.flexible_bodies.reduction import ReducedBody
-from tests.flexible_bodies.bars import bar, mesh_of_bar
+from tests.flexible_bodies.bars import bar, mesh_of_bar, with_middles
 from tests.flexible_bodies.shells.meshes import surface
 
 from ..case import Outcome, Verdict
@@ -47,9 +47,9 @@ def trial(seed: int) -> Verdict:
     random = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        body, judge = (_of_text, _of_mesh, _of_arrays, _of_matrix_market, _of_shells)[int(random.integers(5))](
-            folder, random
-        )
+        body, judge = (_of_text, _of_mesh, _of_arrays, _of_matrix_market, _of_shells, _of_curved_shells, _of_both)[
+            int(random.integers(7))
+        ](folder, random)
         try:
             return judge(reduced_body(body, folder))
         except StiffmbsError as error:
@@ -181,15 +181,73 @@ def _of_shells(folder, random):
     return body, lambda found: _of_area(found, path)
 
 
+def _of_curved_shells(folder, random):
+    """A mesh of shells of second order with changes of its text."""
+    suffix, kind = str(random.choice(["inp", "vtk", "bdf"])), str(random.choice(["quad8", "triangle6"]))
+    path, linear = folder / f"plate.{suffix}", kind.rstrip("0123456789")
+    nodes, cells, _ = surface(3, 2, lambda a, b: (400 * a, 100 * b, 20 * a * b), linear)
+    mesh = with_middles(nodes, linear, cells[linear], kind)
+    meshio.write(path, mesh, FORMATS[suffix], **({"binary": False} if suffix == "vtk" else {}))
+    path.write_text(changed_text(path.read_text(), random))
+    ends = {"a": InterfaceOfNodes(nodes=(0,)), "b": InterfaceOfNodes(nodes=(7,), type="point")}
+    body = FlexibleBody(
+        mesh=path.name, units=Units(length=1e-3), material=STEEL, thickness=THICKNESS, interfaces=ends, modes=2
+    )
+    return body, lambda found: _of_area(found, path)
+
+
+def _of_both(folder, random):
+    """A mesh of bricks with a skin, as bulk data of Nastran with changes of its text."""
+    path, bricks = folder / "both.bdf", mesh_of_bar("hexahedron", along=3, across=1)
+    nodes, cells = bricks.points, bricks.cells[0].data
+    skin = cells[:, [4, 5, 6, 7]]
+    properties = {"nastran:ref": [np.ones(len(cells), dtype=int), np.full(len(skin), 2)]}
+    meshio.write(path, meshio.Mesh(nodes, [("hexahedron", cells), ("quad", skin)], cell_data=properties), "nastran")
+    path.write_text(changed_text(path.read_text(), random))
+    body = FlexibleBody(
+        mesh=path.name, units=Units(length=1e-3), material=STEEL, thicknesses={"PSHELL 2": THICKNESS}, interfaces=ENDS, modes=2
+    )  # fmt: skip
+    return body, lambda found: _of_skinned(found, path)
+
+
+def _of_skinned(found: ReducedBody, path: Path) -> Verdict:
+    """Compare the mass with the volume of bricks and the area of quadrilaterals of property 2."""
+    mesh = meshio.read(*for_reader(path))
+    mass = 0.0
+    for block, tags in zip(mesh.cells, mesh.cell_data["nastran:ref"], strict=True):
+        if block.type == "hexahedron":
+            mass += 1e-9 * STEEL.density * _hexahedra(mesh.points[block.data])
+        elif block.type == "quad":
+            mass += 1e-6 * STEEL.density * THICKNESS * _area(mesh.points, block.data[tags == 2], HALVES["quad"])
+    return _judged(found, mass, 0.0)
+
+
+def _area(points, cells, halves):
+    """Return the area of triangles of elements; with four of them for each part, these are along both diagonals."""
+    sides = ((points[cells[:, k]] for k in corners) for corners in halves)
+    return sum(
+        np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 * halves[corners]
+        for corners, (a, b, c) in zip(halves, sides, strict=True)
+    )
+
+
+BOTH_DIAGONALS = dict.fromkeys([(0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3)], 0.5)
+HALVES = {
+    "triangle": {(0, 1, 2): 1.0}, "quad": BOTH_DIAGONALS,
+    "triangle6": dict.fromkeys([(0, 3, 5), (1, 3, 4), (2, 4, 5), (3, 4, 5)], 1.0),
+    "quad8": dict.fromkeys([(0, 4, 7), (1, 4, 5), (2, 5, 6), (3, 6, 7)], 1.0)
+    | dict.fromkeys([(4, 5, 6), (4, 6, 7), (4, 5, 7), (5, 6, 7)], 0.5),
+}  # fmt: skip
+"""Triangles of an element by their corners, with the share of their areas."""
+
+
 def _of_area(found: ReducedBody, path: Path) -> Verdict:
     """Compare the mass with the area of the triangles; of quadrilaterals, the mean of those along both diagonals."""
     mesh = meshio.read(*for_reader(path))
     area = 0.0
     for block in mesh.cells:
-        halves = {"triangle": [(0, 1, 2)], "quad": [(0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3)]}.get(block.type, [])
-        for corners in halves:
-            a, b, c = (mesh.points[block.data[:, k]] for k in corners)
-            area += np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / (2 if len(halves) == 1 else 4)
+        if block.type in HALVES:
+            area += _area(mesh.points, block.data, HALVES[block.type])
     return _judged(found, area * 1e-6 * THICKNESS * STEEL.density, 0.0)
 
 

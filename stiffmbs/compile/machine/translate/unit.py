@@ -69,7 +69,7 @@ class Unit:
     """
 
     def __init__(self, inlined: int = 0, text: str = "") -> None:
-        self._inlined, self._text = inlined, text
+        self._inlined, self._own = inlined, _parsed(text)
         self._texts: list[str] = []
         self._declared: set[str] = set()
         self._known: dict[tuple[object, ...], tuple[str, str | None]] = {}
@@ -124,9 +124,8 @@ class Unit:
 
     def tree(self, function: Callable[..., object]) -> ast.FunctionDef:
         """Return the syntax tree of a function, from this unit's text or from the file of its code."""
-        known = _functions(self._text)
-        if function.__name__ in known and function.__code__.co_filename.startswith("<"):
-            return known[function.__name__]
+        if function.__name__ in self._own and function.__code__.co_filename.startswith("<"):
+            return self._own[function.__name__]
         return _functions(Path(function.__code__.co_filename).read_text(encoding="utf-8"))[function.__name__]
 
     def write(
@@ -188,6 +187,9 @@ def _stored(body: Sequence[ast.stmt]) -> Iterator[str]:
             yield from _stored(getattr(statement, part, ()))
 
 
-@cache
-def _functions(text: str) -> dict[str, ast.FunctionDef]:
+def _parsed(text: str) -> dict[str, ast.FunctionDef]:
     return {node.name: node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)}
+
+
+_functions = cache(_parsed)
+"""Functions of modules, which many units call; a generated text belongs to one unit and is not kept."""
