@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 RARE = ("all_levels", "all_levels_tangent")
 """Term sets of the formulation index1 only; derived on first use, as they are expensive."""
-RECORDS = 128
-"""Kinds whose records and sources are kept in memory; others are read from the cache again. A car has about 60 kinds."""
+RECORDS = 512
+"""Kinds whose records and sources are kept in memory, more than a large scene has. A car has about 60."""
 DERIVED = 4
 """Kinds whose symbolic terms are kept in memory for their rare kernels. Those of a flexible body take 20 to 60 MB."""
 

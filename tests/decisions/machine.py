@@ -189,7 +189,7 @@ DECISIONS = {
     "compile.machine.native.rotation_vector:TERMS": lambda: rotation_vector._near_one(3.0, 0),
 }  # fmt: skip
 EXPECTED = {
-    "compile.machine.compiler:SOURCES": 1024, "compile.machine.object_code:INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
+    "compile.machine.compiler:SOURCES": 8192, "compile.machine.object_code:INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
     "compile.machine.geometry.common_normal:STAGES": 16, "compile.machine.geometry.common_normal:MOST_STEPS": 60,
     "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
     "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,

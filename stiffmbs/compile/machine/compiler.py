@@ -66,8 +66,8 @@ class Source:
     level: int = FULL
 
 
-SOURCES = 1024
-"""Generated sources whose functions are kept in memory. A car has about 250."""
+SOURCES = 8192
+"""Generated sources whose functions are kept in memory, more than those of `stiffmbs.compile.record.RECORDS` kinds. A car has about 250."""
 FollowsFrom = tuple[Kind, *tuple[str, ...]]
 """Kind of an entry, and all texts that its content follows from besides the processor."""
 _UNNAMED = Description()
