@@ -38,7 +38,7 @@ RARE = ("all_levels", "all_levels_tangent")
 """Term sets of the formulation index1 only; derived on first use, as they are expensive."""
 RECORDS = 512
 """Kinds whose records and sources are kept in memory, more than a large scene has. A car has about 60."""
-DERIVED = 4
+DERIVED = 16
 """Kinds whose symbolic terms are kept in memory for their rare kernels. Those of a flexible body take 20 to 60 MB."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
@@ -197,12 +197,18 @@ def _rare_source(kind: Kind, term_set: str) -> str:
     stored = _stored(entry) if entry else None
     if stored is not None:
         return stored.decode()
-    from .symbolic.generate import kernel_source  # loads SymPy
-
-    source = kernel_source(term_set, _terms(kind), "kernel")
+    source = _rare_sources(kind)[term_set]
     if entry:
         entries.write(of_installed(entry), source.encode())
     return source
+
+
+@lru_cache(RECORDS)
+def _rare_sources(kind: Kind) -> dict[str, str]:
+    """Return the sources of both rare kernels: a run needs them in passes over all kinds, whose terms are not all kept."""
+    from .symbolic.generate import kernel_source  # loads SymPy
+
+    return {term_set: kernel_source(term_set, _terms(kind), "kernel") for term_set in RARE}
 
 
 @lru_cache(DERIVED)

@@ -359,7 +359,7 @@ EXPECTED = {
     "compile.inputs.pieces:SAMPLE": 64, "compile.inputs.pieces:QUANTILE": 10.0, "compile.inputs.pieces:URGENT": 24,
     "compile.inputs.table_ranges:FLAT": 155, "compile.inputs.table_ranges:CONTINUOUS": 27,
     "compile.inputs.zeros:FIRST_STRETCHES": 64, "compile.inputs.zeros:SHORTEST_STRETCH": 35,
-    "compile.inputs.zeros:MOST_STRETCHES": 15, "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001, "compile.record:DERIVED": 4, "compile.record:RECORDS": 512,
+    "compile.inputs.zeros:MOST_STRETCHES": 15, "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001, "compile.record:DERIVED": 16, "compile.record:RECORDS": 512,
     "compile.law_intervals:NOTHING": 119, "compile.state:LEFT_OPEN": 27, "compile.symbolic.shared_parts:MOST_FACTORS": 5,
     "compile.symbolic.symbols:STEEP": 8, "compile.symbolic.variation:MOST_SUMMANDS": 100,
     "compile.symbolic.variation:ORDER_ONE": 8, "elements.turns:INITIAL_COUNT": 119, "compile.table_values:UNDEFINED": 111,
