@@ -28,7 +28,7 @@ from .beams.division import beams_read
 from .beams.entries import names_in_formulas, with_beams
 from .files import expand
 from .files.effective import chosen_options, keep_one_grid
-from .files.stages import with_held, written_stages
+from .files.stages import AT_START, with_held, written_stages
 from .files.written_scene import WrittenScene
 from .model_data import STARTS_LATER
 from .parts.changes import REPEATED, Later, refuse_unused_of_parts, set_later, set_now
@@ -94,12 +94,14 @@ def made_scene(
 
     The changes are values by their paths; those that are not text are used unchanged. `source` names the scene in
     messages, and `line_of` returns the line in it of a path of keys. Meshes and property files are found in the folder,
-    by default the working folder. `unchanged` holds parts that have been validated before; the scene then does not keep
-    its source. `files` are digests of the files from which the mapping was read. `starts_later`: joints and forces that
+    by default the working folder. `unchanged` holds parts that have been validated before; the scene then keeps its source
+    only if joints hold at its start. `files` are digests of the files from which the mapping was read. `starts_later`: joints and forces that
     are not checked in the described pose.
     """
     of_files = dict(files), starts_later
-    kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, *of_files)
+    holds = AT_START in found or any(path.partition(".")[0] == AT_START for path, _ in changes)
+    is_kept = holds or not unchanged
+    kept = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, *of_files) if is_kept else None
     with recorded() as read, beams_read() as beams:
         scene = _made_scene(found, changes, source, line_of, folder, unchanged or Unchanged(), kept, starts_later)
         record(own_sources(scene))
