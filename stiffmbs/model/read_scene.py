@@ -23,7 +23,7 @@ from ..reading.files.unchanged import Unchanged
 from ..reading.files.variables import read_variables
 from ..reading.files.yaml_text import Content, read_yaml
 from ..reading.names import beginnings
-from ..reading.units.units import Quantity
+from ..reading.units.units import Quantity, in_units
 from .beams.division import beams_read
 from .beams.entries import names_in_formulas, with_beams
 from .files import expand
@@ -250,10 +250,20 @@ def _validated(
             raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
-        raise _Located(message, tuple(path)) from None
+        raise _Located(f"{message}{_of_other_units(parameters, replaced)}", tuple(path)) from None
     scene._quantities, scene._of_parts = parameters, of_parts
     unchanged.keep(written_entries, context, scene)
     return scene
+
+
+def _of_other_units(parameters: Mapping[str, Quantity], replaced: Mapping[str, Quantity]) -> str:
+    """Return a clause on the parameters that changes give another unit than the scene."""
+    clauses = [
+        f"; {name} is changed from {in_units(before.dimension)} to {in_units(now.dimension)}"
+        for name, before in replaced.items()
+        if (now := parameters[name]).dimension and before.dimension and now.dimension != before.dimension
+    ]
+    return "".join(clauses)
 
 
 def _with_flexible_bodies(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:

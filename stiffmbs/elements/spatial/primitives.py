@@ -73,7 +73,7 @@ class SpatialJoint(Pair[Marker]):
     """
 
     conditions: ClassVar[tuple[Condition, ...]] = ()
-    written_as: ClassVar[Mapping[str, str]] = dict.fromkeys(
+    written_as: ClassVar[dict[str, str]] = Pair.written_as | dict.fromkeys(
         ("axis", "direction"), "the axis as z of the markers, such as j: {body: ground, orientation: {z: [0, 1, 0]}}"
     )
 
