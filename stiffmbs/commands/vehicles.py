@@ -124,6 +124,7 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
     """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes.
 
     --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; by default SCENE runs unchanged.
+    stiffmbs report SCENE --loads writes a page with them.
 
     Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
     """

@@ -18,7 +18,7 @@ from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
 from .escaped import console as escaping_console
-from .force_table import LOADS, NOT_UNIQUE, elements_of, force_rows, rich_table
+from .force_table import LOADS, NOT_UNIQUE, elements_of, force_rows, request_lines, rich_table
 from .plain import PlainConsole, boxed
 
 if TYPE_CHECKING:
@@ -194,6 +194,8 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
 
     say(f"{solution.name or scene}: {solution.time[0]:g} s to {solution.time[-1]:g} s, {solution.message}")
     _print_loads(solution, console, say, all)
+    for number, text in enumerate(request_lines(displayed(solution), None if all else LOADS.most)):
+        line("" if number else "requests", text)
     energy, constraints = solution.channels["energy.total"], ("constraint.position", "constraint.velocity")
     line("energy", balance_words(solution.balance, float(energy[0])))
     position, velocity = (np.nanmax(solution.channels[name]) for name in constraints)

@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import ChannelError, InputError
 from ..reading.did_you_mean import did_you_mean
 from ..reading.names import owner_of
+from ..results.channels import as_request
 
 Series = np.ndarray
 TIME = "time"
@@ -170,8 +171,9 @@ def _check(text: str, node: ast.AST) -> None:
             known = (*REDUCTIONS, *FUNCTIONS)
             called = channel_of(node.func) if isinstance(node, ast.Call) else None
             near = did_you_mean(called, known) if called else ""
+            request = as_request(ast.unparse(node)) if called and not near else ""
             raise InputError(
-                f"output '{text}': found '{ast.unparse(node)}'{near}, expected channels, numbers, + - * / ^ and {', '.join(known)}"
+                f"output '{text}': found '{ast.unparse(node)}'{near}, expected channels, numbers, + - * / ^ and {', '.join(known)}{request}"
             )
     for part in parts_of(node):
         _check(text, part)

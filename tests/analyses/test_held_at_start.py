@@ -50,7 +50,9 @@ run: {duration: 1 ms, points: 2}
 
 
 def test_a_study_varies_a_scene_with_them():
-    found = stiffmbs.sweep(stiffmbs.read_scene(TEXT), {"at_start.turn.velocity": [1, 2]}, outputs=["bar.omega", "bar.angle"])
+    found = stiffmbs.sweep(
+        stiffmbs.read_scene(TEXT), {"at_start.turn.velocity": [1, 2]}, outputs=["bar.omega", "bar.angle"]
+    )
     assert found["bar.omega"].values[:, 0] == pytest.approx([1, 2], abs=1e-12)
     assert found["bar.angle"].values[:, 0] == pytest.approx(0.4, abs=1e-12)
     found = stiffmbs.sweep(stiffmbs.read_scene(TEXT), {"bodies.tip.mass": [1, 2]}, outputs=["bar.omega"])

@@ -53,5 +53,7 @@ def test_kinds_that_other_programs_call_otherwise(section, name, kind):
 
 
 def test_an_initial_condition_within_a_joint():
-    with pytest.raises(stiffmbs.InputError, match="found 'at_start', expected a drive of the joint in the section at_start"):
+    with pytest.raises(
+        stiffmbs.InputError, match="found 'at_start', expected a drive of the joint in the section at_start"
+    ):
         stiffmbs.read_scene(SCENE.format(kind="revolute", marker="", joint=", at_start: {rate: 1}"))

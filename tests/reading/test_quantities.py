@@ -217,5 +217,5 @@ def test_all_places_of_faults_are_named_and_the_parameter_that_a_change_gives_an
 def test_a_formula_that_yaml_divides_at_its_comma():
     with pytest.raises(stiffmbs.InputError, match="found 3 values, expected 2; a formula with a comma needs quotes"):
         stiffmbs.read_scene(FAULTY.replace("1 N]", "max(0 N, 1 N)]"))
-    with pytest.raises(stiffmbs.InputError, match="found 3 values, expected 2$"):
+    with pytest.raises(stiffmbs.InputError, match=r"found 3 values, expected 2$"):
         stiffmbs.read_scene(FAULTY.replace("1 N]", "0, 1 N]"))

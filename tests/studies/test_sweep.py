@@ -175,6 +175,10 @@ def test_progress_counts_to_the_end_and_tells_the_time_left(examples):
         ({"vary": {"L": [0.5]}, "outputs": "peak(rial.fy)"}, "found no channel 'rial.fy'"),
         ({"vary": {"L": [0.5]}, "outputs": "peak(rail.fy"}, "found no formula"),
         ({"vary": {"L": [0.5]}, "outputs": "__import__('os')"}, "expected channels, numbers"),
+        (
+            {"vary": {"L": [0.5]}, "outputs": "max(fm(hinge))"},
+            "a formula becomes a channel as a request of the scene: .*fm",
+        ),
         ({"vary": {"L": Range(0.5, 1)}}, "found a range without a count"),
         ({"vary": {"L": Range(0.5, 1)}, "sample": "lhs"}, "found 'lhs', expected one of random:N"),
         ({"vary": {"L": 3}}, "L: found 3, expected a list"),

@@ -17,12 +17,7 @@ LEAST_SHARE = 0.01
 def mode_rows(modes: Sequence[Mode]) -> list[tuple[str, str, str, str, str]]:
     """Return number, natural frequency, damping ratio, eigenvalues and participating bodies of each mode."""
     return [
-        (
-            str(k),
-            *_frequency_and_damping(mode),
-            _values(mode),
-            ", ".join(_bodies(mode)),
-        )
+        (str(k), *_frequency_and_damping(mode), _values(mode), ", ".join(_bodies(mode)))
         for k, mode in enumerate(modes, start=1)
     ]
 

@@ -6,7 +6,7 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 

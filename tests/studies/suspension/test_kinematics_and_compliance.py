@@ -237,3 +237,5 @@ def test_a_page_has_the_curves_of_both_variants(tmp_path):
     text = page.read_text()
     assert "<th>base</th><th>heavy</th><th>change</th>" in text and "Bump camber: travel, mm" in text
     assert text.count('class="curve c1') > 3 and 'class="curve c1 other"' in text
+    assert CliRunner().invoke(main, [*given, "-o", str(page)]).exit_code == 0
+    assert page.read_text().count("<th>axle</th>") == 1  # slopes of both wheels alone have no such column
