@@ -20,7 +20,6 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
 from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.turns import counted_angles, take_nearest_turns
-from ..elements.joints.drive import Drive
 from ..elements.turns import GROUND_AXES
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.model_builder import ModelBuilder
@@ -63,6 +62,8 @@ def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
     held = scene.held_at_start
     if held is None:
         return
+    from ..elements.joints.drive import Drive
+
     found = examined(held, RunSettings(start=t, tuning=changed_values()))
     placed = initial_values(found.dynamics(), t)
     system, names = found.redundancy.system, {name for name in scene.at_start if isinstance(held.joints[name], Drive)}
