@@ -97,7 +97,7 @@ def changed_values(own: Provenance | None, other: Provenance | None) -> Iterator
     scenes = own.scene, other.scene
     here, there = (dict(_leaves("", scene)) for scene in scenes)
     for path in {**here, **there}:
-        pair = [values.get(path) or _of_part(scene, path) for values, scene in zip((here, there), scenes, strict=True)]
+        pair = (here.get(path) or _of_part(scenes[0], path), there.get(path) or _of_part(scenes[1], path))
         if pair[0] != pair[1]:
             yield path, *pair
 
@@ -108,7 +108,9 @@ def _of_part(scene: Content, path: str) -> str:
         parameter = path.removeprefix(f"use.{name}.parameters.")
         part = entry.get("part") if isinstance(entry, Mapping) and parameter != path else None
         definition = (scene.get("parts") or {}).get(part) or shipped_part(str(part))
-        known = (definition or {}).get("parameters") or {}
+        known = (definition or {}).get("parameters")
+        if not isinstance(known, Mapping):
+            continue
         vector, _, component = parameter.rpartition("_")
         if parameter in known:
             return str(known[parameter])

@@ -100,7 +100,8 @@ def scene_of(solution: Solution) -> Scene:
     kept = solution.provenance
     try:
         if kept is not None:
-            return read_scene(kept.scene_text, [*kept.changes_in_parts.items()], solution.name)
+            changes = [(path, str(value)) for path, value in kept.changes_in_parts.items()]
+            return read_scene(kept.scene_text, changes, solution.name)
         raise InputError("found a solution without its scene")
     except StiffmbsError as error:
         raise InputError(f"animate: {error}; give the scene too: stiffmbs.animate(scene, runs=solution)") from None
