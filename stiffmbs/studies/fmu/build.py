@@ -23,6 +23,7 @@ from ...results.files import refuse_path, written_whole
 from ..simulation import simulation
 from .standalone.build import Written, write_standalone_fmu
 from .standalone.description import VERSIONS
+from .units import units_of
 
 ABOUT, SCENE = "model.json", "scene.yaml"
 """Files among the FMU's resources: its variables, and the scene."""
@@ -194,5 +195,5 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
         "step": run.output or run.duration / 1000, "tolerance": run.rtol,
         "inputs": {name: float(value) for name, value in inputs.items()},
         "parameters": {name: float(value) for name, value in parameters.items()},
-        "outputs": {name: values[name] for name in chosen},
+        "outputs": {name: values[name] for name in chosen}, "units": dict(units_of(scene, chosen)),
     }  # fmt: skip
