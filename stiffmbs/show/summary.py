@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..results.digits import KnownErrors
 from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
@@ -202,14 +203,21 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
     line("constraints", f"position {position:.2g} m, velocity {velocity:.2g} m/s")
     for label, text in solver_lines(solution.solver):
         line(label, text)
-    if solution.estimate:
-        line("errors", solution.estimate.sentence)
+    if errors := _errors(solution):
+        line("errors", errors)
     for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
         for sentence in sentences:
             line(label, sentence)
     for number, note in enumerate(solution.notes, 1):
         line("notes" if number == 1 else "", f"{number}. {note}")
     return line
+
+
+def _errors(solution: Solution) -> str:
+    """Return the errors in words: those that were estimated, or for a verified run those of its bars; empty without any."""
+    if solution.estimate:
+        return solution.estimate.sentence
+    return KnownErrors(solution).estimate().sentence if solution.verification and solution.errors else ""
 
 
 def _print_loads(solution: Solution, console: Console | PlainConsole, say: Callable[[str], None], all: bool) -> None:
