@@ -45,6 +45,8 @@ REDUCTIONS: dict[str, Callable[[Series, Series], float]] = {
     "t_min": lambda t, x: float(t[int(np.argmin(x))]), "t_max": lambda t, x: float(t[int(np.argmax(x))]),
 }  # fmt: skip
 """Reductions of a channel over time: ``peak`` is the largest magnitude; integrals use the trapezoidal rule."""
+TIMES = ("t_peak", "t_min", "t_max")
+"""Reductions that are times."""
 FUNCTIONS: dict[str, Callable[..., object]] = {
     "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "atan2": np.arctan2, "hypot": np.hypot,
@@ -88,6 +90,16 @@ class Output:
     def channels(self) -> tuple[str, ...]:
         """Return the channels that the formula names."""
         return tuple(_channels(parsed(self.text).body))
+
+    def unit(self, of: Mapping[str, str]) -> str:
+        """Return the unit of a channel or of its reduction, given those of channels; empty for other formulas."""
+        node, unit = parsed(self.text).body, of
+        match node:
+            case ast.Call(ast.Name(name), [inner], []) if name in REDUCTIONS:
+                if name in TIMES:
+                    return "s"
+                node, unit = inner, {} if name == "integral" else of
+        return unit.get(channel_of(node) or "", "")
 
     @property
     def is_series(self) -> bool:

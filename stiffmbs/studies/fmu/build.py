@@ -20,10 +20,10 @@ from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import scene_text
 from ...results.files import refuse_path, written_whole
+from ...results.requests import units_of
 from ..simulation import simulation
 from .standalone.build import Written, write_standalone_fmu
 from .standalone.description import VERSIONS
-from .units import units_of
 
 ABOUT, SCENE = "model.json", "scene.yaml"
 """Files among the FMU's resources: its variables, and the scene."""

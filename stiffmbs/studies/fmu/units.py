@@ -1,22 +1,12 @@
-"""Units of the variables of FMUs."""
+"""Definitions of units in FMUs."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from xml.etree.ElementTree import Element, SubElement
 
-from ...elements.requests.order import units
-from ...model.model_data import ModelData
 from ...reading.units.quantity import quantity
 from ...reading.units.units import BASE
-from ...results.scales import UNITS, kind_of
-
-
-def units_of(data: ModelData, names: Collection[str]) -> Mapping[str, str]:
-    """Return the SI units of channels and requests by name, without those of plain numbers and unknown ones."""
-    requested = units(data.outputs())
-    found = {name: requested[name] if name in requested else UNITS.get(kind_of(name), "") for name in names}
-    return {name: unit for name, unit in found.items() if unit}
 
 
 def unit_definitions(used: Collection[str]) -> Element:

@@ -8,7 +8,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
-from ..units import unit_definitions, units_of
+from ....results.requests import units_of
+from ..units import unit_definitions
 from .model import ExportedModel
 
 VERSIONS = "2.0", "3.0"
