@@ -55,18 +55,20 @@ DEPENDENT = 1e-9
 def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
     """Move the current state by the least amount to satisfy the joints that hold at the start alone, at t = `t` s.
 
-    Position equations constrain positions alone, velocity equations velocities: a position drive leaves the velocity
+    They constrain positions and velocities, as in a run, except for the position of a drive, which leaves the velocity
     free.  Raise an AssemblyError if no such state is found.
     """
 
     held = scene.held_at_start
     if held is None:
         return
+    from ..elements.joints.drive import Drive
+
     found = examined(held, RunSettings(start=t, tuning=changed_values()))
     placed = initial_values(found.dynamics(), t)
-    system, names = found.redundancy.system, {*scene.at_start}
-    of_start = np.array([name in names for name, _ in system.equations], dtype=bool)
-    active = np.where(of_start, ~system.holonomic, found.redundancy.active)
+    system, names = found.redundancy.system, {name for name in scene.at_start if isinstance(held.joints[name], Drive)}
+    of_drives = np.array([name in names for name, _ in system.equations], dtype=bool)
+    active = np.where(of_drives, ~system.holonomic, found.redundancy.active)
     moving = Dynamics(replace(system, active=active, q=placed.q))
     velocities = consistent_values(moving, t).u
     n_pose = dynamics.system.n_pose

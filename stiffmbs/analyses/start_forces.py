@@ -1,8 +1,9 @@
-"""Forces that elastic elements have at the start because of how the scene is drawn.
+"""Forces that elastic elements and dampers have at the start because of how the scene is described.
 
 A mount that is drawn off its place is a stretched spring: its force at the start has no other cause than the drawing. Assembly
 closes joints alone, and may stretch the elements between the bodies that it moves. The forces are compared with those in
-the static equilibrium, which is only computed if one of them is large, and with the weight of all bodies.
+the static equilibrium, which is only computed if one of them is large, and with the weight of all bodies. The damping force of a mount
+has the same cause in the described velocities, if its bodies move relative to each other.
 """
 
 from __future__ import annotations
@@ -56,6 +57,11 @@ ADDED_LOADED = NoteKind(
 HELD_LOADED = NoteKind(
     "held-loaded", _STARTS, "Bodies are held in a drawn pose that does not fit: correct markers and positions"
 )
+DAMPED = NoteKind(
+    "start-damped",
+    "'{element}' starts with {force} of its damping: the initial velocities of its bodies differ there. {remedy}",
+    "The first peak of the loads comes from this start: describe velocities that fit, or let a joint in its place hold in 'at_start'",
+)
 
 
 class Stretched(NamedTuple):
@@ -97,6 +103,9 @@ def start_force_notes(
     system, heavy = dynamics.system, weight(dynamics.system)
     added = [each for each in stretched(system, rows.values[0]) if each.name not in (before or ())]
     for worst in _suspects(system, start, added):
+        if worst.kind in MOUNTS and worst.force > OF_EQUILIBRIUM * _at_rest(dynamics, start, t, worst):
+            yield DAMPED(worst.name, force=_written(worst.force, worst, system))
+            return
         energy = _energy(system, rows, worst.name)
         by_weight = heavy / worst.force * 2.0 * energy / worst.force
         if worst.force > OF_WEIGHT * heavy or by_weight < STIFF * system.size:
@@ -124,6 +133,14 @@ def stretched(system: System, values: np.ndarray) -> list[Stretched]:
                 larger = max(force, torque), torque > force
                 found.append(Stretched(name, kind.kind, _is_elastic(group), *larger, _exponent(element)))
     return found
+
+
+def _at_rest(dynamics: Dynamics, start: InitialValues, t: float, element: Stretched) -> float:
+    """Return the force of an element at the start without velocities, N."""
+    with dynamics.state.unchanged():
+        rows = dynamics.report(np.array([t]), start.q[None], np.zeros_like(start.u)[None], False)
+    found = stretched(dynamics.system, rows.values[0]) if len(rows.t) else [element]
+    return next((each.force for each in found if each.name == element.name), 0.0)
 
 
 def _exponent(element: Element) -> float:

@@ -80,7 +80,7 @@ def kc(
     from ..results.provenance import provenance_of
     from ..show.page.kc import write_kc
     from ..show.style import write_sheet
-    from ..show.suspension import kc_csv, kc_figure, kc_text
+    from ..show.suspension import kc_csv, kc_figure, kc_metrics, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ..studies.suspension.vehicle import VehicleOptions
     from ..studies.targets import checked_targets
@@ -111,7 +111,7 @@ def kc(
 
     written = is_written(output, write_curves)
     written = is_written(figure, lambda path: write_sheet(path, kc_figure(found), origin=origin)) and written
-    _print(every, wanted, as_json, lambda one: one.as_dict(scene), lambda one: kc_text(scene, one))
+    _print(every, wanted, as_json, lambda one: one.as_dict(scene), lambda one: kc_text(scene, one), kc_metrics)
     sys.exit(wanted.status(written))
 
 
@@ -124,6 +124,7 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
     """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes.
 
     --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; by default SCENE runs unchanged.
+    stiffmbs report SCENE --loads writes a page with them.
 
     Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
     """
@@ -193,7 +194,7 @@ def handling(
     Exit status: 0 done, 1 a test was not done, a target is missed or the page could not be written, 2 the input is wrong.
     """
     from ..results.provenance import provenance_of
-    from ..show.handling import handling_text, write_handling
+    from ..show.handling import handling_metrics, handling_text, write_handling
     from ..studies.handling.standards import TESTS
     from ..studies.handling.study import handling as handled
     from ..studies.targets import checked_targets
@@ -212,7 +213,9 @@ def handling(
     origins = {name: provenance_of(loaded) for name, loaded in scenes.items()}
     units = next(iter(scenes.values())).units
     written = is_written(output, lambda path: write_handling(path, found, origins, units, wanted.found))
-    _print(found, wanted, as_json, lambda one: one.as_dict(scene), lambda one: handling_text(scene, one))
+    _print(
+        found, wanted, as_json, lambda one: one.as_dict(scene), lambda one: handling_text(scene, one), handling_metrics
+    )
     done = not any(test.message for one in found.values() for test in one.tests.values())
     sys.exit(wanted.status(written and done))
 
@@ -251,9 +254,13 @@ def _refuse_several(variants: tuple[str, ...], output: Path | None, figure: Path
 
 def _print(
     found: Mapping[str, Result], judged: _Judged, as_json: bool, content: Callable[[Result], dict[str, object]],
-    text: Callable[[Result], str],
+    text: Callable[[Result], str], metrics: Callable[[Result], Sequence[tuple[str, str, str]]],
 ) -> None:  # fmt: skip
-    """Print the results of all variants, as JSON by their names or as text below them; a single result has no name."""
+    """Print the results of all variants, as JSON by their names, or as text with a table of the metrics that differ.
+
+    A single result has no name.
+    """
+    from ..show.page.page_of_tests import compared_lines
     from ..show.page.targets import target_lines, targets_as_dict
 
     if as_json:
@@ -266,6 +273,8 @@ def _print(
     for name, one in found.items():
         lines = [text(one), *target_lines(judged.found.get(name, ()))]
         click.echo("\n".join([f"variant {name}", *lines] if name else lines))
+    if len(found) > 1:
+        click.echo("\n".join(compared_lines({name: metrics(one) for name, one in found.items()})))
 
 
 def _variants(scene: str, changes: list[tuple[str, str]], variants: tuple[str, ...]) -> dict[str, Scene]:

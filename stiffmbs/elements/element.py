@@ -136,6 +136,8 @@ class Element(Described):
         ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker. ``along x`` and so
         on: the spin axis is parallel to it, at any distance. ``point``: its point is on the spin axis. ``body``: no
         condition. A body with any other marker keeps its spin in its quaternion (`stiffmbs.presolve.spinning_bodies`).
+    known_as : tuple of str
+        Names of the kind in other programs, for messages that suggest it.
     symbol : str
         Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
     same_in_each_pose : bool
@@ -143,6 +145,7 @@ class Element(Described):
     """
 
     kind: ClassVar[str] = ""
+    known_as: ClassVar[tuple[str, ...]] = ()
     dimensions: ClassVar[tuple[int, ...]] = ()
     forms: ClassVar[tuple[Mapping[str, object], ...]] = ({},)
     reflected: ClassVar[dict[str, str] | None] = None
@@ -249,6 +252,9 @@ class Joint(Element):
     equations: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
     further_coordinates: ClassVar[tuple[str, ...]] = ()
+    written_as: ClassVar[dict[str, str]] = {
+        "at_start": "a drive of the joint in the section at_start of the scene: {start: {type: drive, joint: NAME, velocity: 1 rad/s}}"
+    }
     channels: ClassVar[tuple[str, ...]] = ()
     transmits: ClassVar[tuple[str, ...]] = ()
     elastic: ClassVar[str] = ""

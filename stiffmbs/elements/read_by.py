@@ -58,9 +58,16 @@ def class_of(
         raise ValueError(f"found {written(found)}, expected {expected}")
     kind = found.get("type")
     if not isinstance(kind, str) or kind not in kinds:
-        shown = "no type" if kind is None else f"the type {written(kind)}{did_you_mean(kind, kinds)}"
+        shown = "no type" if kind is None else f"the type {written(kind)}{_suggested(kind, kinds)}"
         raise ValueError(f"found {shown}, expected one of {', '.join(map(repr, kinds))}{more}")
     return kinds[kind]
+
+
+def _suggested(found: object, kinds: Mapping[str, Any]) -> str:
+    """Return a question for a message, after an unknown type: the kind that other programs call so, or the nearest name."""
+    of_others = (kind for kind, element in kinds.items() if found in getattr(element, "known_as", ()))
+    kind = next(of_others, None)
+    return f" (did you mean '{kind}'?)" if kind else did_you_mean(found, kinds)
 
 
 def in_file(kind: type, read: Callable[[Path], object], description: str) -> ReadBy:

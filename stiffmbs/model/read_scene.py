@@ -26,12 +26,12 @@ from ..reading.formula.nodes import TIME
 from ..reading.formula.text import UNIT, FormulaError
 from ..reading.formula.variables import resolved
 from ..reading.names import beginnings
-from ..reading.units.units import CONSTANTS, UNITS, Quantity
+from ..reading.units.units import CONSTANTS, UNITS, Quantity, in_units
 from .beams.division import beams_read
 from .beams.entries import names_in_formulas, with_beams
 from .files import expand
 from .files.effective import chosen_options, keep_one_grid
-from .files.stages import with_held, written_stages
+from .files.stages import AT_START, with_held, written_stages
 from .files.written_scene import WrittenScene
 from .model_data import STARTS_LATER
 from .parts.changes import REPEATED, Later, refuse_unused_of_parts, set_later, set_now
@@ -97,12 +97,14 @@ def made_scene(
 
     The changes are values by their paths; those that are not text are used unchanged. `source` names the scene in
     messages, and `line_of` returns the line in it of a path of keys. Meshes and property files are found in the folder,
-    by default the working folder. `unchanged` holds parts that have been validated before; the scene then does not keep
-    its source. `files` are digests of the files from which the mapping was read. `starts_later`: joints and forces that
+    by default the working folder. `unchanged` holds parts that have been validated before; the scene then keeps its source
+    only if joints hold at its start. `files` are digests of the files from which the mapping was read. `starts_later`: joints and forces that
     are not checked in the described pose.
     """
     of_files = dict(files), starts_later
-    kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, *of_files)
+    holds = AT_START in found or any(path.partition(".")[0] == AT_START for path, _ in changes)
+    is_kept = holds or not unchanged
+    kept = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, *of_files) if is_kept else None
     with recorded() as read, beams_read() as beams:
         scene = _made_scene(found, changes, source, line_of, folder, unchanged or Unchanged(), kept, starts_later)
         record(own_sources(scene))
@@ -251,10 +253,20 @@ def _validated(
             raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
-        raise _Located(message, tuple(path)) from None
+        raise _Located(f"{message}{_of_other_units(parameters, replaced)}", tuple(path)) from None
     scene._quantities, scene._of_parts = parameters, of_parts
     unchanged.keep(written_entries, context, scene)
     return scene
+
+
+def _of_other_units(parameters: Mapping[str, Quantity], replaced: Mapping[str, Quantity]) -> str:
+    """Return a clause on the parameters that changes give another unit than the scene."""
+    clauses = [
+        f"; {name} is changed from {in_units(before.dimension)} to {in_units(now.dimension)}"
+        for name, before in replaced.items()
+        if (now := parameters[name]).dimension and before.dimension and now.dimension != before.dimension
+    ]
+    return "".join(clauses)
 
 
 def _with_flexible_bodies(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:

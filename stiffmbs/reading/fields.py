@@ -30,7 +30,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
 from .did_you_mean import did_you_mean, instead_of
-from .files.quoted import MOST_QUOTED, first_line, quoted, written
+from .files.quoted import MOST_QUOTED, first_line, listed, quoted, written
 from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
 from .units.quantity import in_si
@@ -236,8 +236,8 @@ def sentence(error: PydanticError) -> str:
     faults = error.errors(include_url=False)
     fault = faults[0]
     where = location(fault["loc"])
-    others = {location(other["loc"]) for other in faults} - {where}
-    more = f" (and {len(others)} more)" if others else ""
+    others = [place for place in dict.fromkeys(location(other["loc"]) for other in faults) if place != where]
+    more = f" (and {len(others)} more: {listed(others)})" if others else ""
     return f"{where}{': ' if where else ''}{_reason(fault)}{more}"
 
 
@@ -278,7 +278,7 @@ def _reason(fault: ErrorDetails) -> str:
             return "found nothing, expected a value (the key is required)"
         case "too_short" | "too_long":
             limit = context.get("min_length", context.get("max_length"))
-            return f"found {context['actual_length']} values, expected {limit}"
+            return f"found {context['actual_length']} values, expected {limit}{_divided_formula(found)}"
         case "string_pattern_mismatch":
             return f"found '{quoted(found)}', expected a name of letters, digits and _ that does not start with a digit"
         case "literal_error" | "enum":
@@ -292,6 +292,13 @@ def _reason(fault: ErrorDetails) -> str:
             return f"found {written(found)}, expected a mapping of keys to values"
         case _:
             return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"
+
+
+def _divided_formula(found: object) -> str:
+    """Return a hint if a list has a formula that YAML has divided at its commas."""
+    texts = [part for part in found if isinstance(part, str)] if isinstance(found, list | tuple) else []
+    is_divided = any(part.count("(") != part.count(")") for part in texts)
+    return """; a formula with a comma needs quotes in a list, as in [0, "max(x, 0)"]""" if is_divided else ""
 
 
 def _as_list(found: object, of_gravity: bool) -> str:

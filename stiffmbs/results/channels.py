@@ -80,8 +80,14 @@ def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
         owner = owner_of(str(name))
         near = [other for other in channels if owner_of(other) == owner] or list(channels)[:12]
         raise ChannelError(
-            f"found no channel '{name}'{did_you_mean(name, channels)}, expected one such as {', '.join(near)}"
+            f"found no channel '{name}'{did_you_mean(name, channels)}, expected one such as {', '.join(near)}{as_request(name)}"
         ) from None
+
+
+def as_request(name: str) -> str:
+    """Return a hint for a message if a name that is no channel is a formula, which a request would compute."""
+    is_formula = "(" in str(name)
+    return f"; a formula becomes a channel as a request of the scene: requests: {{NAME: {name}}}" if is_formula else ""
 
 
 def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> np.ndarray:

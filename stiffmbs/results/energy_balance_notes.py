@@ -98,9 +98,11 @@ def balance_words(balance: Balance, start: float) -> str:
         return f"{start:.9g} J; changes by at most {balance.imbalance:.3g} J"
     change, work = float(balance.change[-1]), float(balance.work[-1])
     bound = "" if balance.resolved else "at most "
+    closer = ", a bound from the output times; 'points: steps' gives a closer one"
+    is_wide = not balance.resolved and balance.imbalance > abs(change)
     return (
         f"{start:.9g} J -> {start + change:.9g} J; non-conservative work {work:.6g} J; "
-        f"balance error {bound}{balance.imbalance:.2g} J"
+        f"balance error {bound}{balance.imbalance:.2g} J{closer * is_wide}"
     )
 
 

@@ -61,6 +61,11 @@ class Provenance:
         return self._effective[0]
 
     @property
+    def changes_in_parts(self) -> dict[str, object]:
+        """Changes within instances of parts, by their paths, which `scene` does not contain."""
+        return self._effective[1]
+
+    @property
     def scene_text(self) -> str:
         """Text of a scene file of the scene that was solved; comments name changes within instances of parts."""
         options = [

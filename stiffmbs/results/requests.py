@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 
 import numpy as np
 
 from ..compile.table_values import curve
 from ..dynamics.storage import allocated, blocks, release
-from ..elements.requests.order import in_order
+from ..elements.requests.order import in_order, units
 from ..elements.requests.output import Output, Term, placeholder
 from ..model.model_data import ModelData
 from ..reading.formula.functions import FUNCTIONS
 from ..reading.formula.nodes import TIME
 from ..reading.formula.text import evaluate
 from .marker_motion import Measures
+from .scales import UNITS, kind_of
 
 Channels = Mapping[str, np.ndarray]
 """Channels by name, shape (n,)."""
@@ -81,3 +82,10 @@ def _value(
 
     values = evaluate(output.tree, names, functions, np.float64)  # divides by zero without an error
     return np.array(np.broadcast_to(np.asarray(values, dtype=float), time.shape))
+
+
+def units_of(data: ModelData, names: Collection[str]) -> Mapping[str, str]:
+    """Return the SI units of channels and requests by name, without those of plain numbers and unknown ones."""
+    requested = units(data.outputs())
+    found = {name: requested[name] if name in requested else UNITS.get(kind_of(name), "") for name in names}
+    return {name: unit for name, unit in found.items() if unit}

@@ -100,6 +100,7 @@ def figure_of(
 def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> None:
     """Draw the same channels of several runs in the display units of the first, with one plot for each unit and a legend below.
 
+    Of several channels each has a color, which its lines of all runs share; each line has its own stroke.
     `sheet`: empty sheet. `runs`: runs by their names in the legend; a single run may have no name. Raises InputError if
     a run has no such channel.
     """
@@ -111,8 +112,10 @@ def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> Non
     plots: Any = sheet.subplots(count, sharex=True, squeeze=False, subplot_kw={"projection": "3d"} if figure.z else {})[
         :, 0
     ]
-    lines = [(name, channel) for channel in figure.y for name in runs]
-    for k, (name, channel) in enumerate(lines):
+    of_both = len(figure.y) > 1 and len(runs) > 1
+    lines = [(k, channel, name) for k, channel in enumerate(figure.y) for name in runs]
+    for number, (k, channel, name) in enumerate(lines):
+        style = stroke(k if of_both else number, number)
         unit = first.unit(channel)
         axes = plots[units.index(unit) if count > 1 else 0]
         run, label = runs[name], channel if count > 1 or len(units) == 1 else _label(first, channel)
@@ -121,7 +124,7 @@ def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> Non
         values = (
             np.where(np.abs(part) < LARGEST, part, np.nan) for part in (x, run[channel], *others)
         )  # a run may diverge
-        axes.plot(*values, label=f"{label}, {name}" if name else label, **stroke(k))
+        axes.plot(*values, label=f"{label}, {name}" if name else label, **style)
     _name_axes(plots, first, figure, units if count > 1 or len(units) == 1 else [""])
     title = figure.title or first.name
     plots[0].set_title(title, parse_math=_is_mathematical(title))

@@ -128,6 +128,17 @@ def force_rows(solution: Solution, most: int | None = None) -> list[list[str]]:
     return rows
 
 
+def request_lines(solution: Solution, most: int | None = None) -> list[str]:
+    """Return a line for each request, with its range and unit; `most`: number of requests, all by default."""
+    ranges, names = channel_ranges(solution), list(solution.requested)
+    lines = [
+        f"{name}: {_range(ranges[name], solution.errors.get(name), 0.0).replace(chr(10), ' .. ')} {solution.unit(name)}".rstrip()
+        for name in names[:most]
+    ]
+    left = len(names) - len(lines)
+    return [*lines, *([f"and {left} more (--all shows all)"] if left else [])]
+
+
 def elements_of(solution: Solution) -> list[str]:
     """Return the elements that have a force and torque among the channels, in the order of the scene."""
     own, last = [name for name in solution.channels if name not in solution.requested], reactions_of(solution)[-1]

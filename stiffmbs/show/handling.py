@@ -45,6 +45,13 @@ def handling_text(scene: str, found: Handling) -> str:
     return "\n".join(lines)
 
 
+def handling_metrics(found: Handling) -> list[tuple[str, str, str]]:
+    """Return name, value and unit of the metrics of all tests."""
+    return [
+        (f"{name}: {metric}", value, unit) for name, one in found.tests.items() for metric, value, unit in _rows(one)
+    ]
+
+
 def _steered(found: Handling) -> str:
     """Return a clause on the steer angle of the front wheels; the travel of the rack or the angle of the steering wheel is the joint's."""
     if found.car.angular:

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..elements.spatial.orientation import AXES
+from ..model.parts.definitions import shipped_part
+from ..reading.files.yaml_text import Content
 from ..results.displayed import displayed
 from ..results.listings import Difference, differences
 from ..results.scales import ROUNDING
@@ -85,14 +88,35 @@ def differences_section(solution: Solution, name: str, other: Solution, origin: 
 
 
 def changed_values(own: Provenance | None, other: Provenance | None) -> Iterator[tuple[str, str, str]]:
-    """Yield each value of two scenes that differs, by its path, with its two texts; a missing value is a dash."""
+    """Yield each value of two scenes that differs, by its path, with its two texts.
+
+    A missing value is a dash, and a missing parameter of a part the one of its definition.
+    """
     if own is None or other is None:
         return
-    here, there = (dict(_leaves("", one.scene)) for one in (own, other))
+    scenes = own.scene, other.scene
+    here, there = (dict(_leaves("", scene)) for scene in scenes)
     for path in {**here, **there}:
-        pair = here.get(path, MISSING), there.get(path, MISSING)
+        pair = (here.get(path) or _of_part(scenes[0], path), there.get(path) or _of_part(scenes[1], path))
         if pair[0] != pair[1]:
             yield path, *pair
+
+
+def _of_part(scene: Content, path: str) -> str:
+    """Return the value that the definition of a part gives a parameter of its use, or a dash."""
+    for name, entry in (scene.get("use") or {}).items():
+        parameter = path.removeprefix(f"use.{name}.parameters.")
+        part = entry.get("part") if isinstance(entry, Mapping) and parameter != path else None
+        definition = (scene.get("parts") or {}).get(part) or shipped_part(str(part))
+        known = (definition or {}).get("parameters")
+        if not isinstance(known, Mapping):
+            continue
+        vector, _, component = parameter.rpartition("_")
+        if parameter in known:
+            return str(known[parameter])
+        if vector in known and component in AXES:
+            return str(known[vector][AXES.index(component)])
+    return MISSING
 
 
 def _leaves(path: str, value: object) -> Iterator[tuple[str, str]]:
@@ -119,6 +143,6 @@ def _row(one: Difference, solution: Solution, other: Solution) -> tuple[str, ...
     factor = solution.display.of(Solution.unit(solution, one.channel))[1]
     values = (np.interp(one.t, run.time, run.channels[one.channel]) for run in (solution, other))
     return (
-        one.channel, f"{one.largest * factor:.4g}", f"{one.relative:.2g}", solution.unit(one.channel), f"{one.t:.6g}",
+        one.channel, f"{one.largest * factor:.4g}", f"{100 * one.relative:.3g} %", solution.unit(one.channel), f"{one.t:.6g}",
         *(f"{value:.6g}" for value in values),
     )  # fmt: skip

@@ -52,9 +52,10 @@ def data_url(sheet: Sheet, form: str, dpi: int) -> str:
     return f"data:{kind};base64,{base64.b64encode(content.getvalue()).decode('ascii')}"
 
 
-def stroke(k: int) -> dict[str, object]:
-    """Return color and stroke of the k-th line of a plot; they repeat together after 42 lines."""
-    return {"color": COLORS[k % len(COLORS)], "linestyle": STROKES[k % len(STROKES)], "linewidth": 1.4}
+def stroke(k: int, dashes: int | None = None) -> dict[str, object]:
+    """Return color and stroke of the k-th line of a plot; they repeat together after 42 lines. `dashes`: number of its stroke, by default k."""
+    line = STROKES[(k if dashes is None else dashes) % len(STROKES)]
+    return {"color": COLORS[k % len(COLORS)], "linestyle": line, "linewidth": 1.4}
 
 
 def dress(axes: Axes, **labels: str) -> None:

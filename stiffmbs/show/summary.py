@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..results.digits import KnownErrors
 from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
 from .escaped import console as escaping_console
-from .force_table import LOADS, NOT_UNIQUE, elements_of, force_rows, rich_table
+from .force_table import LOADS, NOT_UNIQUE, elements_of, force_rows, request_lines, rich_table
 from .plain import PlainConsole, boxed
 
 if TYPE_CHECKING:
@@ -194,20 +195,29 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
 
     say(f"{solution.name or scene}: {solution.time[0]:g} s to {solution.time[-1]:g} s, {solution.message}")
     _print_loads(solution, console, say, all)
+    for number, text in enumerate(request_lines(displayed(solution), None if all else LOADS.most)):
+        line("" if number else "requests", text)
     energy, constraints = solution.channels["energy.total"], ("constraint.position", "constraint.velocity")
     line("energy", balance_words(solution.balance, float(energy[0])))
     position, velocity = (np.nanmax(solution.channels[name]) for name in constraints)
     line("constraints", f"position {position:.2g} m, velocity {velocity:.2g} m/s")
     for label, text in solver_lines(solution.solver):
         line(label, text)
-    if solution.estimate:
-        line("errors", solution.estimate.sentence)
+    if errors := _errors(solution):
+        line("errors", errors)
     for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
         for sentence in sentences:
             line(label, sentence)
     for number, note in enumerate(solution.notes, 1):
         line("notes" if number == 1 else "", f"{number}. {note}")
     return line
+
+
+def _errors(solution: Solution) -> str:
+    """Return the errors in words: those that were estimated, or for a verified run those of its bars; empty without any."""
+    if solution.estimate:
+        return solution.estimate.sentence
+    return KnownErrors(solution).estimate().sentence if solution.verification and solution.errors else ""
 
 
 def _print_loads(solution: Solution, console: Console | PlainConsole, say: Callable[[str], None], all: bool) -> None:

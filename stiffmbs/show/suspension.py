@@ -89,6 +89,12 @@ def kc_text(scene: str, found: KinematicsAndCompliance) -> str:
     return "\n".join(lines)
 
 
+def kc_metrics(found: KinematicsAndCompliance) -> list[tuple[str, str, str]]:
+    """Return name, value of the left side or of the axle, and unit of all measures and slopes."""
+    rows = [*measure_rows(found), *slope_rows(found)]
+    return [(name, next((cell for cell in cells if cell), ""), unit) for name, *cells, unit in rows]
+
+
 def kc_words(found: KinematicsAndCompliance) -> list[str]:
     """Return the numbers of the vehicle that the measures refer to, and which are assumed."""
     vehicle = found.vehicle

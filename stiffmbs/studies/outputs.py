@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import ChannelError, InputError
 from ..reading.did_you_mean import did_you_mean
 from ..reading.names import owner_of
+from ..results.channels import as_request
 
 Series = np.ndarray
 TIME = "time"
@@ -44,6 +45,8 @@ REDUCTIONS: dict[str, Callable[[Series, Series], float]] = {
     "t_min": lambda t, x: float(t[int(np.argmin(x))]), "t_max": lambda t, x: float(t[int(np.argmax(x))]),
 }  # fmt: skip
 """Reductions of a channel over time: ``peak`` is the largest magnitude; integrals use the trapezoidal rule."""
+TIMES = ("t_peak", "t_min", "t_max")
+"""Reductions that are times."""
 FUNCTIONS: dict[str, Callable[..., object]] = {
     "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "atan2": np.arctan2, "hypot": np.hypot,
@@ -87,6 +90,16 @@ class Output:
     def channels(self) -> tuple[str, ...]:
         """Return the channels that the formula names."""
         return tuple(_channels(parsed(self.text).body))
+
+    def unit(self, of: Mapping[str, str]) -> str:
+        """Return the unit of a channel or of its reduction, given those of channels; empty for other formulas."""
+        node, unit = parsed(self.text).body, of
+        match node:
+            case ast.Call(ast.Name(name), [inner], []) if name in REDUCTIONS:
+                if name in TIMES:
+                    return "s"
+                node, unit = inner, {} if name == "integral" else of
+        return unit.get(channel_of(node) or "", "")
 
     @property
     def is_series(self) -> bool:
@@ -170,8 +183,9 @@ def _check(text: str, node: ast.AST) -> None:
             known = (*REDUCTIONS, *FUNCTIONS)
             called = channel_of(node.func) if isinstance(node, ast.Call) else None
             near = did_you_mean(called, known) if called else ""
+            request = as_request(ast.unparse(node)) if called and not near else ""
             raise InputError(
-                f"output '{text}': found '{ast.unparse(node)}'{near}, expected channels, numbers, + - * / ^ and {', '.join(known)}"
+                f"output '{text}': found '{ast.unparse(node)}'{near}, expected channels, numbers, + - * / ^ and {', '.join(known)}{request}"
             )
     for part in parts_of(node):
         _check(text, part)

@@ -21,6 +21,7 @@ from ..model.settings import RunSettings
 from ..reading.files.quoted import quoted
 from ..reading.variation import Range, Variation, variation
 from ..results.provenance import Provenance, with_settings
+from ..results.requests import units_of
 from ..solve.settings import changed, output_grid
 from .case_solver import CaseSolver, Row, Task, refuse_units, written_scene
 from .cases import Cases, cases_of
@@ -40,13 +41,17 @@ StudyProgress = Callable[[int, int, float], None]
 
 @dataclass(frozen=True)
 class Study:
-    """Study that is ready to be solved. `time`: output instants of series, s. `origin`: scene without varied values."""
+    """Study that is ready to be solved.
+
+    `time`: output instants of series, s. `origin`: scene without varied values. `units`: known units of outputs by name.
+    """
 
     task: Task
     cases: Cases
     time: np.ndarray
     title: str
     origin: Provenance
+    units: Mapping[str, str]
 
     @property
     def parts(self) -> dict[str, str]:
@@ -81,6 +86,8 @@ class Study:
 
             rows_of(task, _chunks(self.cases, done, size), found, count, keep)
             solved = data_set(self.cases, self.task.outputs, rows.rows(), self.time, self.title)
+        for name, unit in self.units.items():
+            solved[name].attrs["units"] = unit
         return solved.assign_attrs(self.origin.as_texts())
 
 
@@ -198,7 +205,9 @@ def study_of(
     task = Task(written, cases.names, settings, chosen)
     _refuse_unfit(task, cases)
     origin = with_settings(written, settings, tuple(f"{name} is varied" for name in cases.names))
-    return Study(task, cases, _instants(known, settings, chosen), known.name, origin)
+    of_channels = units_of(known, {channel for one in chosen for channel in one.channels})
+    units = {one.name: unit for one in chosen if (unit := one.unit(of_channels))}
+    return Study(task, cases, _instants(known, settings, chosen), known.name, origin, units)
 
 
 def _refuse_unfit(task: Task, cases: Cases) -> None:

@@ -31,6 +31,34 @@ def test_a_run_starts_where_they_hold_and_goes_on_without_them():
     assert found["energy.kinetic"][0] < stiffmbs.run(stiffmbs.read_scene(held))["energy.kinetic"][0]
 
 
+def test_a_pin_that_holds_at_the_start_holds_velocities_too():
+    text = """
+bodies:
+  crank: {mass: 1, inertia: 0.01, position: [0.1, 0]}
+  rod: {mass: 1, inertia: 0.01, position: [0.4, 0]}
+joints: {hinge: {type: revolute, i: {body: crank, point: [-0.1, 0]}, j: ground}}
+forces: {mount: {type: bushing, i: {body: rod, point: [-0.2, 0]}, j: {body: crank, point: [0.1, 0]}, stiffness: [1e8, 1e8, 0], damping: [2e3, 2e3, 0]}}
+at_start:
+  pin: {type: revolute, i: {body: rod, point: [-0.2, 0]}, j: {body: crank, point: [0.1, 0]}}
+  spin: {type: drive, joint: hinge, velocity: 20}
+run: {duration: 1 ms, points: 2}
+"""
+    found = stiffmbs.run(stiffmbs.read_scene(text))
+    end = found["rod.vy"][0] - 0.2 * found["rod.omega"][0]
+    assert (found["crank.omega"][0], end) == pytest.approx((20, 4), rel=1e-12)
+    assert abs(found["mount.fy"][0]) < 1e-6  # 8 kN if the rod were at rest
+
+
+def test_a_study_varies_a_scene_with_them():
+    found = stiffmbs.sweep(
+        stiffmbs.read_scene(TEXT), {"at_start.turn.velocity": [1, 2]}, outputs=["bar.omega", "bar.angle"]
+    )
+    assert found["bar.omega"].values[:, 0] == pytest.approx([1, 2], abs=1e-12)
+    assert found["bar.angle"].values[:, 0] == pytest.approx(0.4, abs=1e-12)
+    found = stiffmbs.sweep(stiffmbs.read_scene(TEXT), {"bodies.tip.mass": [1, 2]}, outputs=["bar.omega"])
+    assert found["bar.omega"].values[:, 0] == pytest.approx(2, abs=1e-12)
+
+
 def test_they_can_be_changed_from_outside():
     scene = stiffmbs.read_scene(TEXT, [("at_start.tilt.position", "90 deg")])
     assert stiffmbs.run(scene)["bar.x"][0] == pytest.approx(0, abs=1e-12)

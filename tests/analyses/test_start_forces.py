@@ -93,6 +93,18 @@ def test_a_mount_that_a_stage_adds_off_its_place_is_named(start: str) -> None:
     assert not starts(run(read_scene(STAGES.replace("START", start).replace("OFF", "0"))).notes)
 
 
+@pytest.mark.parametrize(("omega", "noted"), [(0.0, True), (20.0, False)])
+def test_a_mount_between_bodies_of_different_velocities(omega: float, noted: bool) -> None:
+    """The end of the lever moves at 2 m/s: 1e3 N s/m damp it with 2 kN."""
+    scene = read_scene(
+        LEVER.format(off=0, mount=BUSHING), [("bodies.lever.velocity", [0, 2]), ("bodies.lever.omega", omega)]
+    )
+    for notes in (run(scene).notes, stiffmbs.check(scene).messages):
+        found = starts(notes)
+        assert len(found) == noted
+        assert not noted or "'mount' starts with 2e+03 N of its damping" in found[0]
+
+
 @pytest.mark.long
 def test_a_mount_in_space() -> None:
     (note,) = starts(run(read_scene(IN_SPACE)).notes)

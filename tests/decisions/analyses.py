@@ -221,7 +221,7 @@ def force_at_start(kind, energy=0.0, **equilibrium):
         elements = [start_forces.Stretched("e", kind, True, force)]
         changes = {
             "_in_equilibrium": lambda *_: equilibrium.get("settled", []), "_is_elastic": lambda _: True,
-            "stretched": lambda *_: elements, "_energy": lambda *_: energy * force**2,
+            "stretched": lambda *_: elements, "_energy": lambda *_: energy * force**2, "_at_rest": lambda *_: force,
         }  # fmt: skip
         with patch.multiple(start_forces, **changes):
             return not [*start_forces.start_force_notes(None, dynamics, start, 0.0, rows)]

@@ -194,6 +194,17 @@ forces:
     assert over.participation == pytest.approx({"a": 1.0, "b": 0.0})
 
 
+def test_a_pendulum_that_stands_upright_has_no_frequency():
+    scene = stiffmbs.read_scene("""
+gravity: [0, -9.81]
+bodies: {bar: {mass: 1, inertia: 1/12, position: [0, 0.5]}}
+joints: {hinge: {type: revolute, i: {body: bar, point: [0, -0.5]}, j: ground}}
+""")
+    (line,) = [line.split() for line in str(stiffmbs.modes(scene)).splitlines() if line.split()[:1] == ["1"]]
+    assert line[1:3] == ["-", "unstable"]
+    assert {value.strip(",") for value in line[3:5]} == {"3.83601", "-3.83601"}  # sqrt(1.5 g / L)
+
+
 def test_the_command_prints_a_table_and_json():
     scene = str(EXAMPLES / "half_car.yaml")
     shown = CliRunner().invoke(main, ["modes", scene])

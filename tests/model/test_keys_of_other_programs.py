@@ -33,3 +33,27 @@ def test_the_centre_of_mass_of_a_planar_body(key):
         stiffmbs.InputError, match=f"bodies.b: found '{key}', expected points of joints and forces relative"
     ):
         stiffmbs.read_scene(f"bodies: {{b: {{mass: 1, inertia: 1, {key}: [0.1, 0]}}}}")
+
+
+@pytest.mark.parametrize(
+    ("section", "name", "kind"),
+    [
+        ("joints", "hinge", "revolute"),
+        ("joints", "translational", "prismatic"),
+        ("joints", "weld", "fixed"),
+        ("joints", "motor", "drive"),
+        ("forces", "rotational_damper", "torsion_spring"),
+        ("forces", "damper", "spring_damper"),
+    ],
+)
+def test_kinds_that_other_programs_call_otherwise(section, name, kind):
+    text = f"bodies: {{b: {{mass: 1, inertia: 1}}}}\n{section}: {{e: {{type: {name}, i: b, j: ground}}}}"
+    with pytest.raises(stiffmbs.InputError, match=rf"found the type '{name}' \(did you mean '{kind}'\?\)"):
+        stiffmbs.read_scene(text)
+
+
+def test_an_initial_condition_within_a_joint():
+    with pytest.raises(
+        stiffmbs.InputError, match="found 'at_start', expected a drive of the joint in the section at_start"
+    ):
+        stiffmbs.read_scene(SCENE.format(kind="revolute", marker="", joint=", at_start: {rate: 1}"))

@@ -199,3 +199,23 @@ def test_text_that_is_no_scene_is_answered_with_what_a_scene_is(text, kind):
         InputError, match=f"found {kind}, expected a scene: YAML with 'bodies', as stiffmbs init writes it"
     ):
         stiffmbs.read_scene(text)
+
+
+FAULTY = """
+parameters: {L: 1 m, m: 2 kg}
+bodies: {bar: {mass: m, inertia: m*L^2/12, position: [L/2, 0]}}
+forces: {push: {type: force, i: bar, force: [0, 1 N]}}
+"""
+
+
+def test_all_places_of_faults_are_named_and_the_parameter_that_a_change_gives_another_unit():
+    with pytest.raises(stiffmbs.InputError) as refused:
+        stiffmbs.read_scene(FAULTY, [("L", "3 kg"), ("m", "4")])
+    assert str(refused.value).endswith("(and 1 more: bodies.bar.position.0); L is changed from m to kg")
+
+
+def test_a_formula_that_yaml_divides_at_its_comma():
+    with pytest.raises(stiffmbs.InputError, match="found 3 values, expected 2; a formula with a comma needs quotes"):
+        stiffmbs.read_scene(FAULTY.replace("1 N]", "max(0 N, 1 N)]"))
+    with pytest.raises(stiffmbs.InputError, match=r"found 3 values, expected 2$"):
+        stiffmbs.read_scene(FAULTY.replace("1 N]", "0, 1 N]"))

@@ -54,6 +54,19 @@ def test_an_animation_without_a_file_is_a_page(tmp_path):
     assert (tmp_path / "a.html").exists()
 
 
+def test_a_solution_is_animated_with_the_scene_that_it_has_kept(tmp_path):
+    pytest.importorskip("jinja2")
+    found = stiffmbs.run(EXAMPLES / "bar_pendulum.yaml", duration=0.1, points=3)
+    assert (
+        stiffmbs.animate(found)._repr_html_()
+        == stiffmbs.animate(EXAMPLES / "bar_pendulum.yaml", runs=found)._repr_html_()
+    )
+    with pytest.raises(
+        stiffmbs.InputError, match=r"without its scene; give the scene too: stiffmbs.animate\(scene, runs=solution\)"
+    ):
+        stiffmbs.animate(replace(found, provenance=None))
+
+
 @pytest.mark.parametrize(("length", "speed"), [(0.1, 0.1 / SHORTEST_FILM), (SHORTEST_FILM, 1.0), (10.0, 1.0)])
 def test_short_runs_are_shown_in_slow_motion(length, speed):
     instants = Playback().instants(2.0, 2.0 + length)

@@ -8,7 +8,10 @@ from xml.etree import ElementTree
 import pytest
 from click.testing import CliRunner
 
+from stiffmbs import read_scene
 from stiffmbs.commands.main import main
+from stiffmbs.results.provenance import provenance_of
+from stiffmbs.show.sections import changed_values
 from stiffmbs.verification import verify
 
 from ..conftest import EXAMPLES
@@ -192,3 +195,17 @@ def test_a_car_s_page_has_its_axles_and_the_loads_of_its_bushings(page_of):
     assert any("axle 'middle': found 0 wheels" in text for text in page.texts)
     for text in ("wheel_rate", "left.lower.front_bush"):
         assert text in page.texts
+
+
+def test_changed_parameters_of_a_part_are_compared_with_its_definition():
+    text = """
+dimensions: 3
+bodies: {chassis: {mass: 1000, inertia: [300, 900, 900]}}
+parts: {front.bar: {use: anti_roll_bar, on: chassis, mounts: {left: chassis, right: chassis}, parameters: {damping: 2}}}
+"""
+    changes = [("parts.front.bar.parameters.stiffness", "1500"), ("parts.front.bar.parameters.link_z", "0.2")]
+    own, other = (provenance_of(read_scene(text, given)) for given in (changes, []))
+    assert [*changed_values(own, other)] == [
+        ("use.front.bar.parameters.stiffness", "1500", "700 N m/rad"),
+        ("use.front.bar.parameters.link_z", "0.2", "0.19 m"),
+    ]

@@ -14,6 +14,12 @@ from stiffmbs.show.plain import PlainConsole
 from stiffmbs.show.summary import INDENT, print_summary
 
 LINKS = 14
+RUN_WITH_A_SHARP_PEAK = """
+gravity: [0, -9.81]
+bodies: {bar: {mass: 1.2, inertia: 0.036, position: [0.3, 0]}}
+joints: {hinge: {type: revolute, i: {body: bar, point: [-0.3, 0]}, j: ground}}
+run: {duration: 1, points: 8, rtol: 1e-8}
+"""
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +48,31 @@ def test_the_ten_largest_loads_are_listed_in_the_order_of_the_scene(chain):
     (head,) = [line for line in lines if line.startswith("force and torque")]
     assert f"the 10 largest of {LINKS} (--all shows all)" in head
     assert [line.split()[1] for line in lines if line.startswith("│")] == [f"j{k}" for k in range(10)]
+
+
+def test_requests_have_lines_with_their_ranges_bars_and_units():
+    scene = stiffmbs.read_scene("""
+gravity: [0, -9.81]
+bodies: {bar: {mass: 1.2, inertia: 0.036, position: [0.3, 0]}}
+joints: {hinge: {type: revolute, i: {body: bar, point: [-0.3, 0]}, j: ground}}
+requests: {load: fm(hinge), turn: az(bar)}
+units: {angle: deg}
+run: {duration: 0.5, points: 501, rtol: 1e-8}
+""")
+    lines = stiffmbs.run(scene).summary().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith("requests"))
+    load, turn = (line[INDENT:].split() for line in lines[start : start + 2])
+    assert load[0] == "load:" and (load[-1], turn[-1]) == ("N", "deg")
+    assert float(load[-4]) == pytest.approx(29.43, abs=1e-2) and load[-3] == "\N{PLUS-MINUS SIGN}"
+    assert lines[start + 1].startswith(" ")
+
+
+def test_a_verified_run_has_the_line_of_its_errors():
+    found = stiffmbs.verify(stiffmbs.read_scene(RUN_WITH_A_SHARP_PEAK))
+    (line,) = [line for line in found.summary().splitlines() if line.startswith("errors")]
+    assert (
+        "positions to" in line and "peaks between output times: up to" in line and "less with a smaller output" in line
+    )
 
 
 def test_all_loads_are_listed_when_asked_for(chain):

@@ -17,7 +17,7 @@ from stiffmbs.commands.main import main
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
-pytest.importorskip("fmpy")
+read_model_description = pytest.importorskip("fmpy").read_model_description
 pytest.importorskip("pythonfmu")
 
 SCENE = """
@@ -396,3 +396,13 @@ def test_an_fmu_has_the_meshes_of_its_scene(tmp_path):
     path.write_text(ROD.format(more="").replace("meshes/rod.vtu", "../rod.vtu"), encoding="utf-8")
     with pytest.raises(InputError, match=r"with files of its own folder only: .*rod\.vtu"):
         stiffmbs.build_fmu(path, fmu)
+
+
+def test_outputs_have_units(tmp_path):
+    path = tmp_path / "bar.yaml"
+    shutil.copyfile(Path(__file__).parents[2] / "examples" / "bar_pendulum.yaml", path)
+    stiffmbs.build_fmu(path, tmp_path / "bar.fmu", ["hinge.fy", "bar.angle"])
+    about = read_model_description(str(tmp_path / "bar.fmu"), validate=True)
+    found = {each.name: each.unit for each in about.modelVariables if each.causality == "output"}
+    assert found == {"hinge.fy": "N", "bar.angle": "rad"}
+    assert {unit.name for unit in about.unitDefinitions} == {"N", "rad"}

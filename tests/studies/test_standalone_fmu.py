@@ -18,7 +18,7 @@ from stiffmbs.studies.fmu.standalone.library import own_platform
 from stiffmbs.studies.fmu.standalone.model import exported_model
 from tests.stress.fuzzers.fmu import has_compiler
 
-pytest.importorskip("fmpy")
+read_model_description = pytest.importorskip("fmpy").read_model_description
 if not has_compiler():
     pytest.skip("FMUs without Python need Linux and a C compiler", allow_module_level=True)
 
@@ -443,6 +443,18 @@ def test_fmi_3_has_the_same_states_and_refusals(built):
     ((first, again), *faults), _ = told_by(IN_VERSION_3, built(version="3.0"))
     assert first == again and faults == [True, True]
     assert first == pytest.approx([np.sin(OMEGA) / OMEGA + 2 / 40 * (1 - np.cos(OMEGA)), 1.0], abs=1e-7)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_variables_have_units(tmp_path, version):
+    (tmp_path / "pushed.yaml").write_text(SCENE + "requests: {where: dx(sled)}\n")
+    chosen = ["where", "sled.angle", "sled.omega", "rail.fy", "energy.total", "constraint.position"]
+    stiffmbs.build_fmu(tmp_path / "pushed.yaml", tmp_path / "a.fmu", chosen, native=True, version=version)
+    about = read_model_description(str(tmp_path / "a.fmu"), validate=True)
+    found = {variable.name: variable.unit for variable in about.modelVariables if variable.name in chosen}
+    assert found == dict(zip(chosen, ("m", "rad", "rad/s", "N", "J", None), strict=True))
+    powers = {unit.name: unit.baseUnit for unit in about.unitDefinitions}
+    assert (powers["J"].kg, powers["J"].m, powers["J"].s, powers["rad/s"].rad, powers["rad/s"].s) == (1, 2, -2, 1, -1)
 
 
 def test_versions_are_2_and_3(built, tmp_path):

@@ -118,6 +118,12 @@ def test_a_case_that_fails_is_a_row_with_its_message(examples):
     assert "found -1.0, expected a mass greater than 0" in str(found.message.values[1])
 
 
+def test_outputs_have_the_units_of_their_channels(examples):
+    outputs = ["peak(hinge.fy)", "t_max(bar.omega)", "bar.angle", "integral(bar.x)", "rms(bar.ax)/9.81"]
+    found = sweep(examples / "bar_pendulum.yaml", L=[0.5, 0.6], outputs=outputs, duration=0.1)
+    assert [found[name].attrs.get("units") for name in outputs] == ["N", "s", "rad", None, None]
+
+
 def test_reductions_and_formulas_of_a_channel():
     """A body thrown upwards: y = 2 t - g t^2 / 2."""
     text = (
@@ -175,6 +181,10 @@ def test_progress_counts_to_the_end_and_tells_the_time_left(examples):
         ({"vary": {"L": [0.5]}, "outputs": "peak(rial.fy)"}, "found no channel 'rial.fy'"),
         ({"vary": {"L": [0.5]}, "outputs": "peak(rail.fy"}, "found no formula"),
         ({"vary": {"L": [0.5]}, "outputs": "__import__('os')"}, "expected channels, numbers"),
+        (
+            {"vary": {"L": [0.5]}, "outputs": "max(fm(hinge))"},
+            "a formula becomes a channel as a request of the scene: .*fm",
+        ),
         ({"vary": {"L": Range(0.5, 1)}}, "found a range without a count"),
         ({"vary": {"L": Range(0.5, 1)}, "sample": "lhs"}, "found 'lhs', expected one of random:N"),
         ({"vary": {"L": 3}}, "L: found 3, expected a list"),

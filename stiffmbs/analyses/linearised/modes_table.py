@@ -17,13 +17,7 @@ LEAST_SHARE = 0.01
 def mode_rows(modes: Sequence[Mode]) -> list[tuple[str, str, str, str, str]]:
     """Return number, natural frequency, damping ratio, eigenvalues and participating bodies of each mode."""
     return [
-        (
-            str(k),
-            f"{mode.natural_frequency:.6g}",
-            "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}",
-            _values(mode),
-            ", ".join(_bodies(mode)),
-        )
+        (str(k), *_frequency_and_damping(mode), _values(mode), ", ".join(_bodies(mode)))
         for k, mode in enumerate(modes, start=1)
     ]
 
@@ -38,6 +32,13 @@ def mode_lines(modes: Sequence[Mode], most: int | None = None) -> list[str]:
     ]
     head = [f"{HEADS[0]:>4}  {HEADS[1]:>12}  {HEADS[2]:>10}  {HEADS[3]:<28}  {HEADS[4]}"] if lines else []
     return [*head, *lines, *([f"and {left} more modes"] if left else [])]
+
+
+def _frequency_and_damping(mode: Mode) -> tuple[str, str]:
+    """Return the natural frequency and the damping ratio of a mode, or words where they do not describe the motion."""
+    if mode.motion is Motion.APERIODIC and not mode.is_stable:
+        return "-", "unstable"
+    return f"{mode.natural_frequency:.6g}", "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
 
 
 def _values(mode: Mode) -> str:

@@ -46,6 +46,7 @@ class LineSpring(Spring, Generic[M]):
     """Base of the planar and the spatial spring-damper."""
 
     kind = "spring_damper"
+    known_as = ("spring", "damper", "translational_spring")
     reflected = {}
     spin_conditions = {"i": "point", "j": "point"}
     forms = (
@@ -85,6 +86,7 @@ class AngleSpring(Spring, Generic[M]):
     """Base of the planar and the spatial torsion spring."""
 
     kind = "torsion_spring"
+    known_as = ("rotational_damper", "torsional_damper", "rotational_spring")
     reflected = {"free_angle": "angle", "preload": "angle", "spring_law": "angle", "damper_law": "angle"}
     forms = ({"stiffness": ..., "damping": ...},)
 

@@ -46,6 +46,7 @@ class Drive(Joint):
     """
 
     kind = "drive"
+    known_as = ("motor", "motion", "actuator")
     reflected = {"prescribed_position": "joint", "prescribed_velocity": "joint"}
     equations = ("motion",)
     channels = ("effort",)

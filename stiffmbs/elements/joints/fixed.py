@@ -14,6 +14,7 @@ class Fixed(WithinHalfATurn, PlanarPair):
     """
 
     kind = "fixed"
+    known_as = ("weld", "rigid")
     equations = ("x", "y", "angle")
     elastic = "bushing"
     keeps_in_plane = True

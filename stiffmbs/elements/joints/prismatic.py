@@ -21,6 +21,7 @@ class Prismatic(WithinHalfATurn, PlanarPair):
     """
 
     kind = "prismatic"
+    known_as = ("slider", "translational")
     equations = ("normal", "angle")
     coordinates = ("displacement",)
     elastic = "bushing"

@@ -17,6 +17,7 @@ class Revolute(KeepsDescribedTurns, PlanarPair):
     """
 
     kind = "revolute"
+    known_as = ("hinge", "pin")
     equations = ("x", "y")
     coordinates = ("angle",)
     elastic = "bushing"

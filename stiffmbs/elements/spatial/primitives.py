@@ -6,7 +6,7 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -73,7 +73,7 @@ class SpatialJoint(Pair[Marker]):
     """
 
     conditions: ClassVar[tuple[Condition, ...]] = ()
-    written_as: ClassVar[Mapping[str, str]] = dict.fromkeys(
+    written_as: ClassVar[dict[str, str]] = Pair.written_as | dict.fromkeys(
         ("axis", "direction"), "the axis as z of the markers, such as j: {body: ground, orientation: {z: [0, 1, 0]}}"
     )
 

@@ -39,8 +39,9 @@ def placed_in_use(
 
 def as_written(message: str, parts: object) -> str:
     """Return a message with the path of an entry of ``use`` as in the file: ``parts.left`` for ``use.left``."""
-    section, *names = message.partition(":")[0].split(".")
-    placed = section == "use" and names and isinstance(parts, dict) and _is_placed(parts.get(names[0]))
+    path = message.partition(":")[0]
+    entries = parts.items() if isinstance(parts, dict) else ()
+    placed = any(_is_placed(entry) and f"{path}.".startswith(f"use.{name}.") for name, entry in entries)
     return f"parts{message.removeprefix('use')}" if placed else message
 
 

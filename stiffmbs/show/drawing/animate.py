@@ -12,8 +12,10 @@ import numpy as np
 
 from ...analyses.job import Runnable, data_of
 from ...analyses.run import run
-from ...errors import InputError, refuse_missing, refuse_text
+from ...errors import InputError, StiffmbsError, refuse_missing, refuse_text
 from ...model.model_data import ModelData
+from ...model.read_scene import read_scene
+from ...model.scene import Scene
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole
 from ...results.solution import Solution
@@ -93,16 +95,28 @@ class Animation:
         return f'<iframe srcdoc="{escape(self.page)}" style="width: 100%; height: 40rem; border: 0"></iframe>'
 
 
+def scene_of(solution: Solution) -> Scene:
+    """Return the scene that a solution has kept; raise an InputError if it has none, or its files are not found."""
+    kept = solution.provenance
+    try:
+        if kept is not None:
+            changes = [(path, str(value)) for path, value in kept.changes_in_parts.items()]
+            return read_scene(kept.scene_text, changes, solution.name)
+        raise InputError("found a solution without its scene")
+    except StiffmbsError as error:
+        raise InputError(f"animate: {error}; give the scene too: stiffmbs.animate(scene, runs=solution)") from None
+
+
 def animate(
-    model: Runnable, path: str | Path | None = None, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float | None = None,
+    model: Runnable | Solution, path: str | Path | None = None, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float | None = None,
     rate: float = 25.0, names: bool = False, forces: bool | None = None, traces: Sequence[str] = (), **changes: Any,
 ) -> Animation | None:  # fmt: skip
     """Write an animation of a model, as a film or a page, or return the page for a notebook.
 
     Parameters
     ----------
-    model : Model, Scene, str or Path
-        A model, a scene, or a scene's file.
+    model : Model, Scene, Solution, str or Path
+        A model, a scene, a scene's file, or a solution, which is shown with the scene that it has kept.
     path : str or Path, optional
         Output file: .gif, .mp4, or .html for a page that needs no network; by default the page is returned.
     runs : Solution or mapping of str to Solution, optional
@@ -138,6 +152,9 @@ def animate(
     else:
         check_animation(Path(path), playback)
     check_view(view)
+    if isinstance(model, Solution):
+        runs = model if runs is None else runs
+        model = scene_of(model)
     data = data_of(model)
     traced(data, traces)
     if runs is None:

@@ -89,9 +89,9 @@ def _table(variants: Variants, tables: list[list[tuple[str, ...]]], start: str) 
     if len(tables) == 1:
         columns = [wheel.side for wheel in next(iter(variants.values())).axle.wheels]
         names = ("measure", *columns, *(("axle",) if len(columns) == 2 else ()), "unit")
-        return Table(
-            names, tuple((worded(row[0].removeprefix(start)), *row[1:-1], written_unit(row[-1])) for row in tables[0])
-        )
+        filled = [k for k, name in enumerate(names) if name != "axle" or any(row[k] for row in tables[0])]
+        rows = [(worded(row[0].removeprefix(start)), *row[1:-1], written_unit(row[-1])) for row in tables[0]]
+        return Table(tuple(names[k] for k in filled), tuple(tuple(row[k] for k in filled) for row in rows))
     by_name = [{row[0]: row for row in rows} for rows in tables]
     found = []
     for name in dict.fromkeys(name for rows in by_name for name in rows):

@@ -16,6 +16,8 @@ from .data import environment, page_file
 if TYPE_CHECKING:
     from ...results.provenance import Provenance
 
+PLAIN = {ord("\N{MINUS SIGN}"): "-", ord("\N{NO-BREAK SPACE}"): " ", ord("\N{EN DASH}"): "-"}
+"""Characters of pages and those of any terminal in their place."""
 MINUS = "\N{MINUS SIGN}"
 CHANGE = "change"
 """Head of the column of changes from the first to the second variant."""
@@ -73,6 +75,34 @@ def change(values: Sequence[float]) -> Iterator[str]:
         part = 100 * (b - a) / abs(a) if known else 0.0
         words = f"{part:+.1f}" if abs(part) >= 0.05 else "0"
         yield f"{words.replace('-', MINUS)}\N{NO-BREAK SPACE}%" if known else MISSING
+
+
+def compared_lines(variants: Mapping[str, Sequence[tuple[str, str, str]]]) -> list[str]:
+    """Return a table of the metrics that differ between variants, as lines.
+
+    `variants`: rows of name, value and unit of each variant, by its name.
+    """
+    values = {name: {metric: value for metric, value, _ in rows} for name, rows in variants.items()}
+    units = {metric: unit for rows in variants.values() for metric, _, unit in rows}
+    table = [("compared", *heads(list(variants))[1:])]
+    for metric, unit in units.items():
+        cells = [of_one.get(metric, MISSING) for of_one in values.values()]
+        if len({*cells}) > 1:
+            table.append((metric, *cells, *change([_number(cell) for cell in cells]), unit))
+    table = [tuple(cell.translate(PLAIN) for cell in row) for row in table]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return [
+        "  ".join((name.ljust(widths[0]), *map(str.rjust, numbers, widths[1:]), unit)).rstrip()
+        for name, *numbers, unit in table
+    ]
+
+
+def _number(cell: str) -> float:
+    """Return the number in a cell; nan for words."""
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
 
 
 def written_unit(unit: str) -> str:

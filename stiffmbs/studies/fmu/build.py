@@ -20,6 +20,7 @@ from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import scene_text
 from ...results.files import refuse_path, written_whole
+from ...results.requests import units_of
 from ..simulation import simulation
 from .standalone.build import Written, write_standalone_fmu
 from .standalone.description import VERSIONS
@@ -194,5 +195,5 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
         "step": run.output or run.duration / 1000, "tolerance": run.rtol,
         "inputs": {name: float(value) for name, value in inputs.items()},
         "parameters": {name: float(value) for name, value in parameters.items()},
-        "outputs": {name: values[name] for name in chosen},
+        "outputs": {name: values[name] for name in chosen}, "units": dict(units_of(scene, chosen)),
     }  # fmt: skip

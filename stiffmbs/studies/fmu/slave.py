@@ -20,6 +20,7 @@ from ...errors import InputError, StiffmbsError
 from ...results.saved_state import SavedState
 from ..simulation import Simulation, simulation
 from .build import ABOUT, SCENE
+from .units import unit_definitions
 
 AT_ONE_TIME = 1e-9
 """Difference of times that the sums of a simulating program may have, relative to the time or the step."""
@@ -50,6 +51,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         self._described: dict[str, float] = about["inputs"]
         self._inputs: dict[str, float] = dict(self._described)
         self._parameters: dict[str, float] = dict(about["parameters"])
+        self._units: dict[str, str] = about["units"]
         self._start: float = about["start"]
         self._tolerance: float | None = None
         self._simulation: Simulation | None = None
@@ -65,6 +67,12 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         """Build the model description; all outputs are initial unknowns, as FMI 2.0.4 requires (section 2.2.8)."""
         root: Element = super().to_xml(model_options or {})
+        for variable in root.iter("ScalarVariable"):
+            if unit := self._units.get(variable.attrib["name"]):
+                variable[0].set("unit", unit)
+        if self._units:
+            after = [part.tag for part in root].index("CoSimulation") + 1
+            root.insert(after, unit_definitions(set(self._units.values())))
         structure = root.find("ModelStructure")
         outputs = root.findall("ModelStructure/Outputs/Unknown")
         if structure is not None and outputs:

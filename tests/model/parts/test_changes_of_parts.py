@@ -207,6 +207,16 @@ def test_a_change_without_effect_is_refused(path, reason):
         read(SCENE, (path, "1"))
 
 
+def test_a_wrong_parameter_of_a_placed_part_has_the_path_of_the_file():
+    text = """
+dimensions: 3
+bodies: {chassis: {mass: 1000, inertia: [300, 900, 900]}}
+parts: {front.bar: {use: anti_roll_bar, on: chassis, mounts: {left: chassis, right: chassis}}}
+"""
+    with pytest.raises(InputError, match=r"--set parts.front.bar.parameters.k: found no such parameter"):
+        stiffmbs.read_scene(text, [("parts.front.bar.parameters.k", "1")])
+
+
 @pytest.mark.parametrize(("path", "reason"), [
     ("parts.leg.bodies.shin.position.1", "which has the values -0.25, -0.2, -0.1 in the uses of the part, expected a path of one use"),
     ("parts.leg.parameters.Q", "it has no 'parameters.Q'"),

@@ -148,6 +148,7 @@ def test_each_unit_has_its_plot_and_every_line_a_stroke_of_its_own():
     lines = [line for axes in sheet.axes for line in axes.get_lines()]
     assert len({(line.get_color(), str(line._unscaled_dash_pattern)) for line in lines}) == 6
     assert len({str(line._unscaled_dash_pattern) for line in lines}) == 6  # in grey too
+    assert [line.get_color() for line in lines[::2]] == [line.get_color() for line in lines[1::2]]  # of both runs
     assert [text.get_text() for text in sheet.legends[0].get_texts()][:2] == ["rail.fy, a", "rail.fy, b"]
 
 

@@ -234,6 +234,12 @@ def test_a_page_has_the_curves_of_both_variants(tmp_path):
     assert refused.exit_code == 2 and "expected a page" in refused.output
     result = CliRunner().invoke(main, [*given, "-o", str(page), "--variant", "heavy=gravity=[0,0,-12]"])
     assert result.exit_code == 0 and "variant heavy" in result.output, result.output
+    compared = [line.split() for line in result.output.partition("\ncompared ")[2].splitlines()]
+    assert compared[0] == ["base", "heavy", "change", "unit"]
+    assert all(base != heavy for _, base, heavy, *_ in ([row[0], *row[-5:-3]] for row in compared[1:]))
+    assert any(row[0] == "load" and row[-3:] == ["+2.0", "%", "N"] for row in compared[1:])
     text = page.read_text()
     assert "<th>base</th><th>heavy</th><th>change</th>" in text and "Bump camber: travel, mm" in text
     assert text.count('class="curve c1') > 3 and 'class="curve c1 other"' in text
+    assert CliRunner().invoke(main, [*given, "-o", str(page)]).exit_code == 0
+    assert page.read_text().count("<th>axle</th>") == 1  # slopes of both wheels alone have no such column

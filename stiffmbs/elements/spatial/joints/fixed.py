@@ -15,5 +15,6 @@ class Fixed(SpatialJoint):
     """
 
     kind = "fixed"
+    known_as = ("weld", "rigid")
     conditions = COINCIDE, ORIENT
     elastic = "bushing"

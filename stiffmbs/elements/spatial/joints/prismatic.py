@@ -22,6 +22,7 @@ class Prismatic(SpatialJoint):
     """
 
     kind = "prismatic"
+    known_as = ("slider", "translational")
     conditions = ON_AXIS, replace(ORIENT, initially=initially_askew)
     coordinates = ("displacement",)
     elastic = "bushing"

@@ -19,6 +19,7 @@ class Revolute(SpatialJoint):
     """
 
     kind = "revolute"
+    known_as = ("hinge", "pin")
     spin_conditions = {"i": "z", "j": "z"}
     conditions = COINCIDE, ALIGN
     coordinates = ("angle",)

@@ -16,6 +16,7 @@ class Spherical(SpatialJoint):
     """
 
     kind = "spherical"
+    known_as = ("ball", "ball_joint")
     spin_conditions = {"i": "point", "j": "point"}
     conditions = (COINCIDE,)
     elastic = "bushing"

@@ -20,6 +20,7 @@ class Universal(SpatialJoint):
     """
 
     kind = "universal"
+    known_as = ("cardan", "hooke")
     conditions = COINCIDE, ACROSS
     further_coordinates = ("angle_1", "angle_2")
     forms = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)

@@ -8,6 +8,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
+from ....results.requests import units_of
+from ..units import unit_definitions
 from .model import ExportedModel
 
 VERSIONS = "2.0", "3.0"
@@ -18,7 +20,7 @@ class Variable(NamedTuple):
     """Continuous variable or tunable parameter of an FMU.
 
     `reference`: its value reference. `initial`: how its start follows; empty for inputs. `start`: value at the start, if it may be set.
-    `state`: value reference of the state that it is the derivative of.
+    `state`: value reference of the state that it is the derivative of. `unit`: SI unit; empty if unknown.
     """
 
     name: str
@@ -27,6 +29,12 @@ class Variable(NamedTuple):
     initial: str = ""
     start: float | None = None
     state: int | None = None
+    unit: str = ""
+
+    @property
+    def of_number(self) -> dict[str, str]:
+        """Return start and unit as attributes."""
+        return ({} if self.start is None else {"start": repr(self.start)}) | ({"unit": self.unit} if self.unit else {})
 
 
 class Variables(NamedTuple):
@@ -59,15 +67,18 @@ def variables_of(model: ExportedModel, outputs: Mapping[str, int]) -> Variables:
     # with joints, the start is the nearest state that satisfies them
     initial = "approx" if model.dynamics.system.n_c else "exact"
     names = {k: channel or f"state[{k}]" for k, channel in model.states.items()}
-    known = set(names.values())
+    known, unit = set(names.values()), units_of(model.job.data, [*names.values(), *outputs])
     return Variables(
-        [Variable(name, k, "output" if name in outputs else "local", initial, start[k]) for k, name in names.items()],
+        [
+            Variable(name, k, "output" if name in outputs else "local", initial, start[k], unit=unit.get(name, ""))
+            for k, name in names.items()
+        ],
         [
             Variable(f"der({name})", model.first_derivative + k, "local", "calculated", state=k)
             for k, name in names.items()
         ],
         [
-            Variable(name, model.first_output + place, "output", "calculated")
+            Variable(name, model.first_output + place, "output", "calculated", unit=unit.get(name, ""))
             for name, place in outputs.items()
             if name not in known
         ],
@@ -103,6 +114,8 @@ def description(
     }  # fmt: skip
     SubElement(root, "ModelExchange", abilities | ({"needsCompletedIntegratorStep": "true"} if is_new else {}))
     SubElement(root, "CoSimulation", abilities | {"canHandleVariableCommunicationStepSize": "true"})
+    used = {each.unit for each in variables.all} - {""}
+    root.extend([unit_definitions(used)] if used else [])
     categories = SubElement(root, "LogCategories")
     for name in ("logStatusDiscard", "logStatusError"):
         SubElement(categories, "Category", name=name)
@@ -131,7 +144,7 @@ def _by_numbers(root: Element, model: ExportedModel, variables: Variables) -> No
     number = {each.reference: k for k, each in enumerate(variables.all, 1)}
     listed = SubElement(root, "ModelVariables")
     for each in variables.all:
-        real = {} if each.start is None else {"start": repr(each.start)}
+        real = each.of_number
         real |= {} if each.state is None else {"derivative": str(number[each.state])}
         SubElement(SubElement(listed, "ScalarVariable", _of(each)), "Real", real)
     structure = SubElement(root, "ModelStructure")
@@ -156,7 +169,7 @@ def _by_references(root: Element, model: ExportedModel, variables: Variables) ->
         for k in range(model.dynamics.system.n_event_functions)
     ]
     for each in [*variables.all, *indicators]:
-        more = {} if each.start is None else {"start": repr(each.start)}
+        more = each.of_number
         more |= {} if each.state is None else {"derivative": str(each.state)}
         SubElement(listed, "Float64", _of(each) | more)
     structure = SubElement(root, "ModelStructure")
