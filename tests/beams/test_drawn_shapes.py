@@ -97,3 +97,22 @@ def test_a_beam_has_one_color_and_no_line_inside():
     assert len(colors) == 5 and len(set(colors.values())) == 1
     assert drawing.bodies["other"] != colors["bar.start"]
     assert not drawing.links
+
+
+@pytest.mark.parametrize("name", ["tube", "i"])
+@pytest.mark.parametrize("turn", [30, 90, 150, 179])
+def test_a_corner_has_the_shapes_of_both_legs(name, turn):
+    """In the plane of the corner the height keeps its direction."""
+    x, y = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    scene = stiffmbs.read_scene(
+        f"dimensions: 3\nbodies:\n  bar: {{type: beam, points: [[0, 0, 0], [1, 0, 0], [{1 + x}, {y}, 0]], elements: 4, section: {SECTIONS[name]}, "
+        "material: {E: 206 GPa, density: 7850 kg/m^3}}\n"
+    )
+    corner = next(body for body in scene.bodies.values() if np.allclose(body.position, [1, 0, 0]))
+    ways = set()
+    for shape in corner.geometry:
+        axes = rotation(np.array(corner.orientation)) @ rotation(np.array(shape.orientation))
+        ways.add(tuple(np.round(axes[:, 2 if shape.type == "cylinder" else 0], 9) + 0.0))
+        if shape.type == "box":
+            assert axes[2, 2] == pytest.approx(1, abs=1e-9)
+    assert ways == {(1, 0, 0), (round(x, 9) + 0.0, round(y, 9) + 0.0, 0)}

@@ -40,25 +40,28 @@ def spatial_shapes(node: Node, along: Sequence[np.ndarray]) -> list[Shape]:
 
 def _between(section: Section | None, a: np.ndarray, b: np.ndarray) -> Iterator[Shape]:
     """Yield the shapes of a cross section between two points of the axis."""
-    length = float(np.linalg.norm(b - a))
-    tangent = (b - a) / length
-    second = np.array([0.0, 1.0, 0.0]) - tangent[1] * tangent
-    second /= np.linalg.norm(second)
-    third, middle = np.cross(tangent, second), (a + b) / 2
+    length, middle = float(np.linalg.norm(b - a)), (a + b) / 2
+    axes = _turned_to((b - a) / length)
     if isinstance(section, Circle | Tube):
-        axes = np.column_stack([second, third, tangent])
         yield {
             "type": "cylinder", "radius": section.diameter / 2, "length": length, "point": middle.tolist(),
-            "orientation": list(from_matrix(axes)),
+            "orientation": list(from_matrix(axes[:, [1, 2, 0]])),
         }  # fmt: skip
         return
-    axes = np.column_stack([tangent, second, third])
     for low_2, high_2, low_3, high_3 in _about_centroid(section):
         centre = middle + axes @ [0.0, (low_2 + high_2) / 2, (low_3 + high_3) / 2]
         yield {
             "type": "box", "size": [length, high_2 - low_2, high_3 - low_3], "point": centre.tolist(),
             "orientation": list(from_matrix(axes)),
         }  # fmt: skip
+
+
+def _turned_to(tangent: np.ndarray) -> np.ndarray:
+    """Return the axes of a node, turned by the least angle so that the first is a tangent: at a corner those beyond it."""
+    across = np.array([0.0, -tangent[2], tangent[1]])  # e_1 x tangent
+    turn = np.array([[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]])
+    part = 1 + tangent[0]  # 0 where the axis turns straight back: shapes are alike in both directions
+    return np.asarray(np.eye(3) + turn + (turn @ turn / part if part else 0.0))
 
 
 def _about_centroid(section: Section | None) -> np.ndarray:
