@@ -60,8 +60,7 @@ def _turned_to(tangent: np.ndarray) -> np.ndarray:
     """Return the axes of a node, turned by the least angle so that the first is a tangent: at a corner those beyond it."""
     across = np.array([0.0, -tangent[2], tangent[1]])  # e_1 x tangent
     turn = np.array([[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]])
-    part = 1 + tangent[0]  # 0 where the axis turns straight back: shapes are alike in both directions
-    return np.asarray(np.eye(3) + turn + (turn @ turn / part if part else 0.0))
+    return np.asarray(np.eye(3) + turn + turn @ turn / (1 + tangent[0]))  # no axis turns straight back
 
 
 def _about_centroid(section: Section | None) -> np.ndarray:
