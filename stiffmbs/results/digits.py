@@ -87,9 +87,7 @@ class KnownErrors:
         if largest:
             sentence += f"; largest error: {largest} {100 * relative:.2g} %"
         if of_peak - relative > relative:
-            sentence += (
-                f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak}), less with a smaller output"
-            )
+            sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak}), less with a shorter output interval"
         before = self._solution.estimate or ErrorEstimate("estimated", "")
         return replace(before, sentence=sentence, largest=largest, relative=relative)
 

@@ -71,7 +71,9 @@ def test_a_verified_run_has_the_line_of_its_errors():
     found = stiffmbs.verify(stiffmbs.read_scene(RUN_WITH_A_SHARP_PEAK))
     (line,) = [line for line in found.summary().splitlines() if line.startswith("errors")]
     assert (
-        "positions to" in line and "peaks between output times: up to" in line and "less with a smaller output" in line
+        "positions to" in line
+        and "peaks between output times: up to" in line
+        and "less with a shorter output interval" in line
     )
 
 
