@@ -7,13 +7,11 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
-from stiffmbs.commands.resident import VARIABLE
 
 from ...benchmark import Row
 from ...drives import SCENES
@@ -21,8 +19,6 @@ from ...processes import seconds_of_children
 from ..cart_pendulum import SCENE
 
 ROUNDS = 11
-PATIENCE, LOADED_AFTER = "20", 1.0
-"""Times, s, after which a resident process ends, and after which it has loaded what a command needed."""
 PROGRAM = (sys.executable, "-m", "stiffmbs")
 LOAD = """
 import sys, time, stiffmbs
@@ -36,10 +32,10 @@ TYRE_FORCE, CHANGED = "force: ['(mu*max(", "force: ['((1+sin(t)/9)*mu*max("
 """The beginning of the longitudinal force of a tyre, and the same with a factor more."""
 
 
-def _told(*program: str, cache: str, **variables: str) -> str:
+def _told(*program: str, cache: str) -> str:
     """What a process prints that keeps its cache in a folder."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("PYTHONDONTWRITEBYTECODE", VARIABLE)}
-    environment = {**kept, DIRECTORY_VARIABLE: cache, **variables}
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    environment = {**kept, DIRECTORY_VARIABLE: cache}
     return subprocess.run(program, check=True, capture_output=True, text=True, env=environment).stdout
 
 
@@ -48,15 +44,6 @@ def process_seconds(*program: str, cache: str) -> float:
     before = seconds_of_children()
     _told(*program, cache=cache)
     return seconds_of_children() - before
-
-
-def _elapsed_in_resident_process(*program: str, cache: str) -> float:
-    """Time of a command, s; the first starts the resident process, and after the next it loads what that needed."""
-    begun = time.perf_counter()
-    _told(*program, cache=cache, **{VARIABLE: PATIENCE})
-    elapsed = time.perf_counter() - begun
-    time.sleep(LOADED_AFTER)
-    return elapsed
 
 
 @dataclass(frozen=True)
@@ -87,9 +74,6 @@ class Start:
             for name, program in programs.items():
                 times = [process_seconds(*program, cache=folder) for _ in range(rounds + 1)]
                 yield Row(name, "from start to end", 0.0, statistics.median(times[1:]), name == "python")
-                if name.startswith("stiffmbs"):
-                    times = [_elapsed_in_resident_process(*program, cache=folder) for _ in range(rounds + 3)]
-                    yield Row(name, "by a resident process, elapsed", 0.0, statistics.median(times[3:]), False)
 
 
 @dataclass(frozen=True)
