@@ -112,13 +112,14 @@ def _crossing(value: Callable[[float], float], step: float) -> float:
     from scipy.optimize import bisect
 
     reach = step * ESTIMATE.difference
-    while (value(-reach) > 0.0) == (value(reach) > 0.0):
+    while (value(-reach) > 0.0) == (is_after := value(reach) > 0.0):
         reach *= 2.0
         if reach > step / ESTIMATE.difference:
             return np.nan
-    is_after = value(reach) > 0.0
 
     def side(later: float) -> float:
+        if abs(later) == reach:  # known, and within rounding of zero it may differ when it is evaluated again
+            return float(np.sign(later))
         return 1.0 if (value(later) > 0.0) == is_after else -1.0
 
     return float(bisect(side, -reach, reach, xtol=step * ESTIMATE.difference))

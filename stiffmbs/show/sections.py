@@ -143,6 +143,6 @@ def _row(one: Difference, solution: Solution, other: Solution) -> tuple[str, ...
     factor = solution.display.of(Solution.unit(solution, one.channel))[1]
     values = (np.interp(one.t, run.time, run.channels[one.channel]) for run in (solution, other))
     return (
-        one.channel, f"{one.largest * factor:.4g}", f"{100 * one.relative:.3g} %", solution.unit(one.channel), f"{one.t:.6g}",
+        one.channel, f"{one.largest * factor:.4g}", f"{one.relative:.2g}", solution.unit(one.channel), f"{one.t:.6g}",
         *(f"{value:.6g}" for value in values),
     )  # fmt: skip

@@ -74,3 +74,13 @@ def test_the_nearest_crossing_of_a_function_that_changes_its_sign_for_an_instant
         return 2349.0 if late - 9.5e-9 < later <= late else -41.8 if abs(later) < 1.0 else 300.0
 
     assert restarts._crossing(value, 1e-7) == pytest.approx(late, abs=1e-13)
+
+
+def test_a_function_within_rounding_of_zero_may_have_another_sign_when_it_is_evaluated_again():
+    """A run of bdf in index1 ended in an error of SciPy."""
+    signs = iter([-1.0, 1.0])
+
+    def value(later):
+        return next(signs, 1.0)
+
+    assert abs(restarts._crossing(value, 1e-7)) <= 1e-7
