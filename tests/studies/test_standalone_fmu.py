@@ -321,9 +321,12 @@ print(json.dumps(values(made, 'sled.x', 'k')))
     assert (x, k) == (pytest.approx(place * np.cos(then * 0.5) + velocity / then * np.sin(then * 0.5), abs=1e-7), 160.0)
 
 
-def test_parameters_of_a_computed_start_are_fixed(tmp_path):
+@pytest.mark.parametrize(
+    "start", ["start: settled", "at_start: {begin: {type: drive, joint: rail, velocity: p*50 cm/s}}"]
+)
+def test_parameters_of_a_computed_start_are_fixed(tmp_path, start):
     path = tmp_path / "tuned.yaml"
-    path.write_text(TUNED + "start: settled\n")
+    path.write_text(f"{TUNED}{start}\n")
     assert exported_model(stiffmbs.load_scene(path)).parameters == ()
 
 

@@ -252,7 +252,7 @@ def _parameters(
     affine function, or of which it is one of several. `of_inputs`: numbers that depend on inputs.
     """
     scene, found = job.data, dict[str, float]()
-    if not isinstance(scene, Scene) or scene.start != "described":
+    if not isinstance(scene, Scene) or scene.start != "described" or scene.at_start:
         return {}, ()
     numbers: list[AffineNumber] = []
     taken = {(id(each.numbers), each.place) for each in of_inputs}
