@@ -88,7 +88,7 @@ class Integrator(Generic[E]):
             if reached.failure:
                 return
             if reached.t < stops[0]:
-                chattering.note_event(reached.t, *reached.state(), reached.fired[0] if reached.fired else -1)
+                chattering.note_event(reached.t, reached.state, reached.fired[0] if reached.fired else -1)
             before = t = reached.t
             if t < grid.end:
                 q, u = self.on_constraints(reached)

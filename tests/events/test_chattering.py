@@ -167,14 +167,14 @@ def test_a_relay_that_swings_on_and_on_is_followed(solver):
 def test_the_number_of_events_to_come_follows_the_law_of_their_growth():
     """Events of a motion that is driven evenly faster are many, but not beyond all bounds; exponential growth is."""
     dynamics = Dynamics(stiffmbs.compile.compile_model.compile_model(block("-5*sign(block.x)").data()))
-    q, u = np.ones(3), np.ones(3)  # far from the jump
+    state = np.ones(3), np.ones(3)  # far from the jump
     evenly = Chattering(dynamics, 10.0, 1e-6)
     for k in range(1, 30_000):
-        evenly.note_event(10.0 * np.sqrt(k / 60_000), q, u, 0)
+        evenly.note_event(10.0 * np.sqrt(k / 60_000), lambda: state, 0)
     exponentially = Chattering(dynamics, 2.0, 1e-6)
     with pytest.raises(stiffmbs.errors.SolverError, match="'push' chatters"):
         for k in range(1, 10_000):
-            exponentially.note_event(np.log(k) / 10.0, q, u, 0)
+            exponentially.note_event(np.log(k) / 10.0, lambda: state, 0)
 
 
 @pytest.mark.parametrize("solver", ["bdf", "dop853"])

@@ -184,7 +184,7 @@ def noted(fired, farthest):
     model.add("f", AppliedForce(i="b", force=("-abs(b.x)", 0)))
     job = prepare(model, duration=1.0, points=2)
     hovering = HoveringEvents(job.dynamics, Chattering(job.dynamics, 1.0, 1e-6), 1e-6)
-    noise = noise_of(job.dynamics, 0.0, job.start.q, job.start.u, 1e-6, np.zeros(1))
+    noise = np.array([noise_of(job.dynamics, 0.0, job.start.q, job.start.u, 1e-6, {0: 0.0})[0][1]])
     hovering.note(0.0, job.start.q, job.start.u, fired, farthest * noise)
     return hovering, job, noise
 

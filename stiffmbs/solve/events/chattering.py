@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
 from .discontinuity import JUMP, noise_of, sliding
 from .native.parameters import SEARCH
+
+if TYPE_CHECKING:
+    from ..stiff_rows import States
 
 
 @dataclass(frozen=True)
@@ -90,8 +94,8 @@ class Chattering:
                 "a velocity at rest, a jump without a breakpoint, or a mechanism that locks; or the tolerance is below the rounding of the coordinates"
             )
 
-    def note_event(self, t: float, q: np.ndarray, u: np.ndarray, event_function: int) -> None:
-        """Record an event at a state; the number of the event function is negative if it is unknown.
+    def note_event(self, t: float, state: Callable[[], States], event_function: int) -> None:
+        """Record an event; `state` returns q and u there. The number of the event function is negative if it is unknown.
 
         Raises ChatteringError when events accumulate so that the run would not end; names the element.
         """
@@ -101,8 +105,8 @@ class Chattering:
             return
         first, middle, last = (self._events[k] for k in (0, CHATTERING.window, 2 * CHATTERING.window))
         if self._to_come(middle - first, last - middle) > CHATTERING.too_many:
-            self.begin(t, q, u)
-            if loads := _of_loads(self._dynamics, t, q, u):
+            self.begin(t, *state())
+            if loads := _of_loads(self._dynamics, t, *state()):
                 raise ChatteringError(f"stopped at t = {t:.9g} s: {loads}")
             name = (
                 f"'{writer(self._dynamics.system, 'event_function', event_function)}'"
@@ -169,7 +173,9 @@ class HoveringEvents:
     def __init__(self, dynamics: Dynamics, chattering: Chattering, rtol: float) -> None:
         self._dynamics, self._chattering, self._rtol = dynamics, chattering, rtol
         self.band = np.zeros(dynamics.system.n_event_functions)
-        self._left, self._beyond, self._moved = (np.zeros_like(self.band) for _ in range(3))
+        self._left: dict[int, float] = {}
+        self._beyond: dict[int, float] = {}
+        self._moved: dict[int, float] = {}
 
     @property
     def any(self) -> bool:
@@ -181,42 +187,30 @@ class HoveringEvents:
 
         Raises ChatteringError if a force drives the motion back from both sides of its discontinuity; names the element.
         """
-        passed = np.array(fired, dtype=np.int64)
-        at_zero, self._left = passed[self.band[passed] == 0.0], np.zeros_like(self.band)
-        self._left[passed] = self.band[passed]
-        self.band[passed] = 0.0
-        self._beyond[:] = 0.0
-        if len(at_zero):
-            self._beyond[at_zero] = self._values(t, q, u)[at_zero]
-            noise = np.maximum(noise_of(self._dynamics, t, q, u, self._rtol, farthest), self._moved)
-            hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
-            if len(hovering):
-                self._chattering.begin(t, q, u)
-                self.band[hovering] = noise[hovering]
+        self._left = {k: self.band[k] for k in fired if self.band[k]}
+        self.band[list(self._left)] = 0.0
+        at_zero = {k: farthest[k] for k in fired if k not in self._left}
+        found = noise_of(self._dynamics, t, q, u, self._rtol, at_zero) if at_zero else {}
+        self._beyond = {k: value for k, (value, _) in found.items()}
+        bands = {k: max(noise, self._moved.get(k, 0.0)) for k, (_, noise) in found.items()}
+        if hovering := {k: band for k, band in bands.items() if at_zero[k] <= band}:
+            self._chattering.begin(t, q, u)
+            self.band[list(hovering)] = list(hovering.values())
 
     def taken_back(self, t: float) -> bool:
         """Return True if a restart, to the current state, has taken functions back into the bands that they had left.
 
         The step had larger errors than its tolerance, as velocities have that no error test includes: the bands are doubled.
         """
-        self._moved[:] = 0.0
-        if not (self._left.any() or self._beyond.any()):
+        self._moved = {}
+        if not (self._left or self._beyond):
             return False
-        state = self._dynamics.state
-        values = self._values(t, state.q, state.u)
-        across = values * self._beyond < 0.0
-        self._moved[across] = 2.0 * abs(values[across])
-        back = abs(values) < (1.0 - SEARCH.margin) * self._left
-        self.band[back] = 2.0 * self._left[back]
-        return bool(back.any())
-
-    def _values(self, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Return the event functions at a state."""
-        state = self._dynamics.state
-        with state.unchanged():
-            state.q[:], state.u[:] = q, u
-            state.evaluate("event_function", t)
-        return state.values["event_function"][: len(self.band)].copy()
+        self._dynamics.state.evaluate("event_function", t)
+        values = self._dynamics.state.values["event_function"]
+        self._moved = {k: 2.0 * abs(values[k]) for k, beyond in self._beyond.items() if values[k] * beyond < 0.0}
+        back = {k: 2.0 * left for k, left in self._left.items() if abs(values[k]) < (1.0 - SEARCH.margin) * left}
+        self.band[list(back)] = list(back.values())
+        return bool(back)
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""

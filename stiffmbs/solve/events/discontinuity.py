@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -37,13 +36,13 @@ class JumpParameters:
 
 JUMP = tuned("jumps", JumpParameters())
 
-SWITCHES, OF_STATES, CROSSED, BY_VELOCITIES, SIDE = together(
+SWITCHES, NOISE, OF_STATES, CROSSED, SIDE = together(
     "stiffmbs.solve.events.native.sign_changes",
     SHORT,
     switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
+    noise="void(float64, float64, float64, float64*, float64*, float64*, float64*, float64*, int64, float64*, float64*, float64*, float64*, float64*, int64*)",
     of_states="void(int64, float64*, float64*, float64*, int64, float64*, int64*)",
-    crossed="int64(float64, float64, float64*, float64*, float64*, float64*, int64, int64*, int64*)",
-    by_velocities="void(float64, float64, float64*, float64*, float64*, int64, float64*, int64*)",
+    crossed="int64(float64, float64, float64*, float64*, float64*, float64*, int64, int64*, float64*, float64*, int64*)",
     side="int64(float64, float64, float64, float64*, float64*, float64*, float64*, float64*, int64, float64*, float64*, float64*, int64*)",
 )
 
@@ -78,35 +77,49 @@ class _Side(NamedTuple):
 
 
 class _Around:
-    """States near a given state.
+    """States near one that `at` sets.
 
     `dynamics`: its state becomes that of the last evaluation. `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
     """
 
-    def __init__(self, dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
+    def __init__(self, dynamics: Dynamics) -> None:
         dynamics.state.load("event_function")
-        self._dynamics, self.t, self.q, self.u = dynamics, t, q, u
-        self._direction = direction_of(dynamics)
-        self._count = dynamics.system.n_event_functions
-        self._there, self._still = np.empty(len(q)), np.zeros(len(q))
-        self._kept = np.ascontiguousarray(q, dtype=float), np.ascontiguousarray(u, dtype=float)
-        self._at = addresses(*self._kept, *self._direction)
-        self._table = dynamics.table.ctypes.data
+        system, count = dynamics.system, dynamics.system.n_event_functions
+        self._dynamics, self.t, self.q, self.u = dynamics, 0.0, np.zeros(system.n_q), np.zeros(system.n_u)
+        self._direction, self._count = direction_of(dynamics), count
+        self._there, self._found, self._at = (
+            np.empty(system.n_q),
+            np.empty(count),
+            addresses(self.q, self.u, *self._direction),
+        )
+        self._noise, kept = np.empty((3, count)), np.empty(system.n_q + 2 * (system.n_u + system.n_c))
+        self._of_noise, self._crossed = (
+            (np.zeros(system.n_q), kept, np.empty((4, count))),
+            np.empty(count, dtype=np.int64),
+        )
+        self._to_found, self._table = address(self._found), dynamics.table.ctypes.data
+        still, *memory = addresses(*self._of_noise, *self._noise)
+        self._to_noise = (*self._at, still, count, *memory, self._table)
+        self._to_crossed = (*self._at, count, address(self._crossed), memory[0], self._to_found, self._table)
 
-    def values(self, size: float, of_velocities: bool = False) -> np.ndarray:
-        """Return the event functions after a move of a size, of all coordinates or of the velocities alone."""
-        found, (q, u, along_q, along_u) = np.empty(self._count), self._at
-        along_q = address(self._still) if of_velocities else along_q
-        SWITCHES.short_call(self.t, size, q, u, along_q, along_u, self._count, address(found), self._table)
-        return found
+    def at(self, t: float, q: np.ndarray, u: np.ndarray) -> _Around:
+        """Set the state."""
+        self.t, self.q[:], self.u[:] = t, q, u
+        return self
 
-    def changes(self, size: float, of_velocities: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Return the median of three changes, as a jump, where another function vanishes, is in one; and if they have one sign."""
-        values = [self.values(place * size, of_velocities) for place in (-2.0, -1.0, 1.0, 2.0)]
-        before, here, after = (there - behind for behind, there in pairwise(values))
-        one_way = (before * here > 0.0) & (here * after > 0.0)
-        before, here, after = 2.0 * abs(before), abs(here), 2.0 * abs(after)
-        return np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after)), one_way
+    def values(self, size: float) -> np.ndarray:
+        """Return the event functions after a move of a size."""
+        SWITCHES.short_call(self.t, size, *self._at, self._count, self._to_found, self._table)
+        return self._found.copy()
+
+    def noise(self, rtol: float) -> np.ndarray:
+        """Return the event functions, their changes by rounding, and by `rtol` of the velocities, one row for each.
+
+        A function that does not change in one direction with the velocities has a negative number in the last row. The state of
+        the dynamics stays.
+        """
+        NOISE.short_call(self.t, SEARCH.precision, rtol, *self._to_noise)
+        return self._noise
 
     def side(self, size: float) -> _Side:
         """Return the event functions, accelerations and rates after a move of a size."""
@@ -121,19 +134,14 @@ class _Around:
         """Return both sides of a move."""
         return self.side(size), self.side(-size)
 
-    def crossed(self, reach: float | None = None) -> np.ndarray:
-        """Return the event functions that differ in sign between the two sides of a move."""
-        found = np.empty(self._count, dtype=np.int64)
-        reach = SEARCH.precision if reach is None else reach
-        count = CROSSED.short_call(self.t, reach, *self._at, self._count, address(found), self._table)
-        return found.nonzero()[0] if count else found[:0]
+    def crossed(self, reach: float) -> np.ndarray:
+        """Return the event functions of velocities that differ in sign between the two sides of a move.
 
-    def follow_velocities(self, reach: float) -> np.ndarray:
-        """Return a mask of the event functions that depend on velocities."""
-        found = np.empty(self._count)
-        at_q, at_u, _, along_u = self._at
-        BY_VELOCITIES.short_call(self.t, reach, at_q, at_u, along_u, self._count, address(found), self._table)
-        return found != 0.0
+        The state of the dynamics stays.
+        """
+        if not CROSSED.short_call(self.t, reach, *self._to_crossed):
+            return np.empty(0, dtype=np.int64)
+        return self._crossed.nonzero()[0]
 
     def at_zero(self, reach: float, event_function: int) -> _Around:
         """Return the states near the zero of an event function, by bisection between moves of -reach and reach."""
@@ -150,35 +158,27 @@ class _Around:
             x + size * np.maximum(1.0, np.abs(x)) * part
             for x, part in zip((self.q, self.u), self._direction, strict=True)
         )
-        return _Around(self._dynamics, self.t, q, u)
+        return _Around(self._dynamics).at(self.t, q, u)
 
 
 def noise_of(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, rtol: float, farthest: np.ndarray
-) -> np.ndarray:
-    """Return the changes of the event functions that the precision of a state explains, shape (n_event_functions,).
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, rtol: float, farthest: dict[int, float]
+) -> dict[int, tuple[float, float]]:
+    """Return the values of event functions, and the changes of these values that the precision of a state explains.
 
     That is rounding. It is the tolerance for functions of reactions, since stiff forces amplify the errors of a state, and the
     tolerance of velocities for functions with continuous rates: their forces have no jump, and the error test resolves a kink.
-    `farthest`, of that shape: values beyond which a function has left zero anyway.
+    `farthest`: values of some event functions beyond which they have left zero anyway.
     """
-    state = dynamics.state
-    with state.unchanged():
-        around = _Around(dynamics, t, q, u)
-        noise = around.changes(SEARCH.precision)[0]
-        if dynamics.system.switches_by_reactions:
-            rough, pressed = around.changes(rtol)[0], []
-            for lam in (state.lam.copy(), state.lam + 1.0):
-                state.lam[:] = lam
-                state.evaluate("event_function", t)
-                pressed.append(state.values["event_function"][: len(noise)].copy())
-            noise = np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
-        slow, one_way = around.changes(rtol, of_velocities=True)
-        for k in np.flatnonzero(one_way & (noise < farthest) & (farthest <= slow)).tolist():
-            at_zero = around.at_zero(JUMP.larger_move, k)
-            if not _rates_differ([at_zero.sides(size) for size in (JUMP.larger_move, SEARCH.precision)], k):
-                noise[k] = slow[k]
-    return noise
+    around = dynamics.once(_Around).at(t, q, u)
+    here, noise, slow = around.noise(rtol).tolist()
+    for k, far in farthest.items():
+        if noise[k] < far <= slow[k]:
+            with dynamics.state.unchanged():
+                at_zero = around.at_zero(JUMP.larger_move, k)
+                if not _rates_differ([at_zero.sides(size) for size in (JUMP.larger_move, SEARCH.precision)], k):
+                    noise[k] = slow[k]
+    return {k: (here[k], noise[k]) for k in farthest}
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
@@ -189,12 +189,12 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     default `JumpParameters.larger_move`.
     """
     reach = JUMP.larger_move if reach is None else reach
+    around = dynamics.once(_Around).at(t, q, u)
+    back = around.crossed(reach)  # the rates of functions of positions do not depend on forces
+    if not len(back):
+        return back
     with dynamics.state.unchanged():
-        around = _Around(dynamics, t, q, u)
-        back = around.crossed(reach)
-        if len(back):  # the rates of others do not depend on forces
-            back = back[around.follow_velocities(reach)[back]]
-        for sense in _ahead_first(around, reach, back) if len(back) else ():
+        for sense in _ahead_first(around, reach, back):
             back = back[_returns(around.side(sense * reach), back)]
             if not len(back):
                 return back

@@ -62,7 +62,7 @@ class Starts:
         self._of_restarts = partial(_restarting, dynamics, settings)
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": ida.table, "error_norm": ida.error_norm.table, "n_watched": ida.watch.n,
-            "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
+            "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + 2 * (system.n_u + system.n_c)), "sums": np.zeros(system.n_u),
             **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **ida.counters.arrays,
             **newton_bounds(settings.rtol, control.newton), **polishing_bounds(settings.rtol), "growth": control.growth,
             **{name: ida.address(function) for name, function in FUNCTIONS.items()},

@@ -27,10 +27,76 @@ def _event_functions(s, m, t):
     return evaluate(s, SWITCH, t)
 
 
-def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
-    """Mark the first `count` event functions with different signs on both sides of a move; return their number."""
+def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
+    """Store the first `count` event functions at a moved state in `values`."""
     m = dynamics_view(dynamics)
     s = state_view(m.state)
+    _take(s, size, q, u, along_q, along_u)
+    copied(values, _event_functions(s, m, t), count)
+
+
+@compiled
+def _changes(s, m, t, size, q, u, along_q, along_u, count, moved, change):
+    """Compute the median of three changes of event functions within a move from -2 to 2 sizes.
+
+    A jump, where another function vanishes, is in one of the three.  `moved` is memory of shape (4, count).
+    """
+    for k in range(4):
+        _take(s, size * (k - 2 if k < 2 else k - 1), q, u, along_q, along_u)
+        copied(shifted(moved, k * count), _event_functions(s, m, t), count)
+    for k in range(count):
+        before = 2.0 * abs(moved[count + k] - moved[k])
+        here = abs(moved[2 * count + k] - moved[count + k])
+        after = 2.0 * abs(moved[3 * count + k] - moved[2 * count + k])
+        change[k] = max(min(before, here), min(max(before, here), after))
+
+
+@compiled
+def _one_way(moved, k, count):
+    """Return True if an event function changes in one direction within the last move of `_changes`."""
+    here = moved[2 * count + k] - moved[count + k]
+    before = (moved[count + k] - moved[k]) * here
+    return before > 0.0 and here * (moved[3 * count + k] - moved[2 * count + k]) > 0.0
+
+
+@compiled
+def _stored(s, kept):
+    """Store the state from which integrators continue."""
+    copied(kept, s.q, s.n_q)
+    copied(shifted(kept, s.n_q), s.u, s.n_u)
+    copied(shifted(kept, s.n_q + s.n_u), s.a, s.n_u)
+    copied(shifted(kept, s.n_q + 2 * s.n_u), s.lam, s.n_c)
+    copied(shifted(kept, s.n_q + 2 * s.n_u + s.n_c), s.mu, s.n_c)
+
+
+@compiled
+def _restored(s, kept):
+    """Restore what `_stored` has stored."""
+    copied(s.q, kept, s.n_q)
+    copied(s.u, shifted(kept, s.n_q), s.n_u)
+    copied(s.a, shifted(kept, s.n_q + s.n_u), s.n_u)
+    copied(s.lam, shifted(kept, s.n_q + 2 * s.n_u), s.n_c)
+    copied(s.mu, shifted(kept, s.n_q + 2 * s.n_u + s.n_c), s.n_c)
+
+
+def crossed(t, size, q, u, along_q, along_u, count, found, kept, values, dynamics):
+    """Mark the first `count` event functions with different signs on both sides of a move that depend on velocities.
+
+    Return their number.  The state is unchanged in the end.  Memory: `kept` for a state, `values` for event functions.
+    """
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    _stored(s, kept)
+    total = _opposite(s, m, t, size, q, u, along_q, along_u, count, found)
+    if total > 0:
+        total = _of_velocities(s, m, t, size, q, u, along_u, count, values, found)
+    _restored(s, kept)
+    return total
+
+
+@compiled
+def _opposite(s, m, t, size, q, u, along_q, along_u, count, found):
+    """Mark the first `count` event functions with different signs on both sides of a move; return their number."""
     _take(s, size, q, u, along_q, along_u)
     values = _event_functions(s, m, t)
     for k in range(count):
@@ -45,12 +111,50 @@ def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
     return total
 
 
-def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
-    """Store the first `count` event functions at a moved state in `values`."""
+@compiled
+def _of_velocities(s, m, t, size, q, u, along_u, count, values, found):
+    """Remove the marks of event functions that do not depend on velocities; return the number of the others."""
+    copied(s.q, q, s.n_q)
+    for k in range(s.n_u):
+        s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
+    copied(values, _event_functions(s, m, t), count)
+    copied(s.u, u, s.n_u)
+    here = _event_functions(s, m, t)
+    total = 0
+    for k in range(count):
+        found[k] = found[k] and here[k] != values[k]
+        total += found[k]
+    return total
+
+
+def noise(t, precision, rtol, q, u, along_q, along_u, still, count, kept, moved, here, found, slow, dynamics):
+    """Compute event functions and their changes by a move of the size of rounding, the first `count` ones, at a state.
+
+    Functions of multipliers change by a move of the relative tolerance, as stiff forces amplify errors.  `slow` has the changes by a
+    move of velocities of that size, negative for functions that do not change in one direction.  The state is unchanged in the end.
+    `kept` is memory for a state, `moved` of shape (4, count).
+    """
     m = dynamics_view(dynamics)
     s = state_view(m.state)
-    _take(s, size, q, u, along_q, along_u)
-    copied(values, _event_functions(s, m, t), count)
+    _stored(s, kept)
+    copied(s.q, q, s.n_q)
+    copied(s.u, u, s.n_u)
+    copied(here, evaluate(s, SWITCH, t), count)
+    _changes(s, m, t, precision, q, u, along_q, along_u, count, moved, found)
+    if m.switches_by_reactions:
+        _changes(s, m, t, rtol, q, u, along_q, along_u, count, moved, slow)
+        copied(moved, evaluate(s, SWITCH, t), count)
+        for k in range(s.n_c):
+            s.lam[k] += 1.0
+        pressed = evaluate(s, SWITCH, t)
+        for k in range(count):
+            if pressed[k] != moved[k]:
+                found[k] = max(found[k], slow[k])
+    _changes(s, m, t, rtol, q, u, still, along_u, count, moved, slow)
+    for k in range(count):
+        if not _one_way(moved, k, count):
+            slow[k] = -1.0
+    _restored(s, kept)
 
 
 def of_states(n, t, q, u, count, values, dynamics):
@@ -61,21 +165,6 @@ def of_states(n, t, q, u, count, values, dynamics):
         copied(s.q, shifted(q, i * s.n_q), s.n_q)
         copied(s.u, shifted(u, i * s.n_u), s.n_u)
         copied(shifted(values, i * count), _event_functions(s, m, t[i]), count)
-
-
-def by_velocities(t, size, q, u, along_u, count, found, dynamics):
-    """Mark the first `count` event functions that depend on velocities."""
-    m = dynamics_view(dynamics)
-    s = state_view(m.state)
-    copied(s.q, q, s.n_q)
-    for k in range(s.n_u):
-        s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
-    copied(found, _event_functions(s, m, t), count)
-    copied(s.q, q, s.n_q)
-    copied(s.u, u, s.n_u)
-    values = _event_functions(s, m, t)
-    for k in range(count):
-        found[k] = found[k] != values[k]
 
 
 def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):

@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.sign_changes import by_velocities, crossed, moved_past, taken_back, until_changed
+from stiffmbs.solve.events.native.sign_changes import crossed, moved_past, taken_back, until_changed
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
@@ -113,19 +113,11 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
 
 @compiled
 def _meets(w, s, t):
-    """Return 1 if event functions of velocities change sign near the current state, which is restored."""
+    """Return True if event functions of velocities change sign near the current state, which is unchanged in the end."""
     count = w.n_event_functions
     copied(w.q, s.q, s.n_q)
     copied(w.u, s.u, s.n_u)
-    meets = 0
-    if crossed(t, w.reach, w.q, w.u, w.along_q, w.along_u, count, w.found, w.dynamics) > 0:
-        by_velocities(t, w.reach, w.q, w.u, w.along_u, count, w.values, w.dynamics)
-        for k in range(count):
-            if w.found[k] != 0 and w.values[k] != 0.0:
-                meets = 1
-    copied(s.q, w.q, s.n_q)
-    copied(s.u, w.u, s.n_u)
-    return meets
+    return crossed(t, w.reach, w.q, w.u, w.along_q, w.along_u, count, w.found, w.kept, w.values, w.dynamics) > 0
 
 
 @compiled
