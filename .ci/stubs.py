@@ -67,6 +67,7 @@ from .analyses.check import check as check
 from .analyses.equilibrium import equilibrium as equilibrium
 from .analyses.equilibrium import quasi_static as quasi_static
 from .analyses.load_scene import load_scene as load_scene
+from .analyses.linearised.campbell import campbell as campbell
 from .analyses.linearised.modes import modes as modes
 from .analyses.run import run as run
 from .analyses.linearised.transfer import transfer as transfer

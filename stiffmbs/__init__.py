@@ -30,7 +30,7 @@ _LATER = {
     "scene_schema": ".model.schema",
     "Report": ".analyses.check", "Solution": ".results.solution", "check": ".analyses.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
-    "compile_model": ".compile.compile_model", "equilibrium": ".analyses.equilibrium", "quasi_static": ".analyses.equilibrium", "modes": ".analyses.linearised.modes", "run": ".analyses.run",
+    "compile_model": ".compile.compile_model", "equilibrium": ".analyses.equilibrium", "quasi_static": ".analyses.equilibrium", "modes": ".analyses.linearised.modes", "campbell": ".analyses.linearised.campbell", "run": ".analyses.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".analyses.linearised.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".reading.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",

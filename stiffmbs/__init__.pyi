@@ -44,6 +44,7 @@ from .analyses.check import Report as Report
 from .analyses.check import check as check
 from .analyses.equilibrium import equilibrium as equilibrium
 from .analyses.equilibrium import quasi_static as quasi_static
+from .analyses.linearised.campbell import campbell as campbell
 from .analyses.linearised.modes import modes as modes
 from .analyses.linearised.transfer import transfer as transfer
 from .analyses.load_scene import load_scene as load_scene

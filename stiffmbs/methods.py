@@ -6,7 +6,7 @@ classes import none of the packages that use them.  `self` is ``Any`` because th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
 
 import stiffmbs
@@ -32,6 +32,39 @@ class NotebookMethods:
 
     def _repr_html_(self) -> str:
         return stiffmbs.html(self)
+
+
+class CampbellMethods(NotebookMethods):
+    """Text and figure of modes over a parameter."""
+
+    def table(self: Any, orders: Sequence[float] | None = None) -> str:
+        """Return the frequencies and damping ratios at both ends, critical speeds and limits of stability as text.
+
+        Parameters
+        ----------
+        orders : sequence of float, optional
+            As for `plot`.
+        """
+        from .show.campbell import campbell_text
+
+        return campbell_text(self, orders)
+
+    def plot(self: Any, orders: Sequence[float] | None = None, highest: float | None = None) -> Sheet:
+        """Draw the Campbell diagram: frequencies and damping ratios over the parameter (needs matplotlib, the extra ``plot``).
+
+        Parameters
+        ----------
+        orders : sequence of float, optional
+            Multiples of the parameter that are drawn as lines; by default 1 if its unit is that of an angular velocity.
+        highest : float, optional
+            Highest frequency that is shown, Hz; by default a little above the lines.
+        """
+        from .show.campbell import campbell_figure
+
+        return campbell_figure(self, orders, highest)
+
+    def __str__(self) -> str:
+        return self.table()
 
 
 class ModelMethods(NotebookMethods):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..reading.files.text_file import STANDARD_INPUT, file_text, source_name
+from ..reading.units.units import Dimension, Quantity, in_text
 
 if TYPE_CHECKING:
     from ..model.scene import Scene
@@ -78,6 +79,28 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     from ..model.files.scenes_read_before import read_scene_file
 
     return read_scene_file(file_text(path), changes, source_name(path), Path(path))
+
+
+def with_parameter(
+    path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = (), dimension: Dimension | None = None
+) -> Callable[[float], Scene]:
+    """Return a scene as a function of a parameter or any other value in it, SI units; standard input is read once.
+
+    If the dimension of the values is known, the scene rejects another dimension.
+    """
+    if str(path) == STANDARD_INPUT:
+        from ..model.read_scene import read_scene
+
+        text = file_text(path)
+        return lambda value: read_scene(text, [*changes, (parameter, _written(value, dimension))], source_name(path))
+    return lambda value: load_scene(path, [*changes, (parameter, _written(value, dimension))])
+
+
+def _written(value: float, dimension: Dimension | None) -> str:
+    """Return a value with its unit, if any; whole numbers without a decimal point, for counts."""
+    if dimension is not None:
+        return str(in_text(Quantity(value, dimension)))
+    return str(int(value)) if value.is_integer() else repr(value)
 
 
 def refuse_others(path: str | Path) -> None:

@@ -95,7 +95,8 @@ def _found(scene: str, options: dict[str, Any], tell: Any) -> tuple[Found, Prove
     }
     if options["over"]:
         from ..analyses.job import data_of
-        from ..comparison.over import compare_over, with_parameter
+        from ..analyses.load_scene import with_parameter
+        from ..comparison.over import compare_over
 
         over = read_variation(options["over"], "--over")
         made = with_parameter(scene, over.name, changes, over.dimension)

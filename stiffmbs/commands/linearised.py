@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -38,20 +39,38 @@ from .scene import (
 @option(
     "--amplitude FLOAT RANGE", "Amplitude of the motion written, relative to the size of the mechanism.", default=0.1
 )
+@option(
+    "--over NAME=VALUES",
+    "Follow the modes over a parameter or any other value of SCENE: spin=0:6000 rpm:61. -o writes the diagram (.png, .svg, .pdf) or its "
+    "columns (.csv).",
+)
+@option(
+    "--order FLOAT RANGE ...",
+    "With --over: list where a frequency is this multiple of the parameter, in rad/s; by default 1 if its unit is an angular velocity.",
+    "orders",
+)
 @option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @solving_options
 def modes(
-    scene: str, state: str | None, at: float | None, output: Path | None, amplitude: float, as_json: bool, **options: object
+    scene: str, state: str | None, at: float | None, output: Path | None, amplitude: float, over: str | None, orders: tuple[float, ...],
+    as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Linearise SCENE about a state: frequency, damping and participation of each mode, one per degree of freedom.
 
+    With --over these are followed over a parameter (Campbell diagram, root locus), with critical speeds and limits of stability.
+
     Exit status: 0 done, 1 no such state is found or a file could not be written, 2 the input is wrong.
     """
+    if over:
+        _modes_over(scene, over, state, at, orders or None, output, as_json, options)
+        return
     from ..analyses.linearised.modes import modes as found_modes
     from ..results.files import write
 
     page = output is not None and output.suffix == ".html"
     with refusing(scene, as_json, output):
+        if orders:
+            raise InputError(f"--order {orders[0]:g}: found no --over, expected it with --over NAME=VALUES")
         if page:
             from ..show.page.modes import write_modes
         refuse_file("-o", output, scene, "modes in motion" if page else "results")
@@ -66,6 +85,41 @@ def modes(
             assert output is not None
             write(output.with_stem(f"{output.stem}_{number}"), found.shape(number, amplitude))
     click.echo(json.dumps(found.as_dict(scene)) if as_json else found.table())
+
+
+def _modes_over(
+    scene: str, over: str, state: str | None, at: float | None, orders: Sequence[float] | None, output: Path | None,
+    as_json: bool, options: dict[str, object],
+) -> None:  # fmt: skip
+    """Follow the modes of SCENE over a value, print them, and write the diagram or its columns."""
+    from ..analyses.linearised.campbell import campbell
+    from ..reading.variation import read_variation
+    from ..results.files import write_table
+    from ..results.provenance import provenance_of
+    from ..show.campbell import campbell_csv
+    from ..show.style import write_sheet
+    from .progress import StatusLine
+
+    changes = changes_of(options)
+    with refusing(scene, as_json, output):
+        if state:
+            raise InputError(f"--from {state}: found it with --over, expected a state that follows from SCENE")
+        refuse_file("-o", output, scene, "Campbell diagram")
+        varied = read_variation(over, "--over")
+        with StatusLine() as tell:
+            found = campbell(scene, varied.name, varied, at=at, tell=tell, changes=changes)
+    origin = provenance_of(load_scene(scene, changes), others=(f"{varied.name} is varied",))
+
+    def write_diagram(path: Path) -> None:
+        """Write the columns, or the figure."""
+        if path.suffix == ".csv":
+            write_table(path, campbell_csv(found), origin)
+        else:
+            write_sheet(path, found.plot(orders), origin=origin)
+
+    written = is_written(output, write_diagram)
+    click.echo(json.dumps(found.as_dict(scene, orders)) if as_json else found.table(orders))
+    sys.exit(0 if written else Status.FAILED)
 
 
 @click.command(short_help="Frequency response.")

@@ -8,31 +8,16 @@ from pathlib import Path
 from typing import Unpack
 
 from ..analyses.job import Runnable, data_of
-from ..analyses.load_scene import load_scene
+from ..analyses.load_scene import with_parameter
 from ..compile.machine.routines import fully_compiled
 from ..errors import AssemblyError, InputError, SolverError
-from ..model.read_scene import read_scene
 from ..model.settings import RunSettings, Settings, takes_settings
-from ..reading.files.text_file import STANDARD_INPUT, file_text, source_name
-from ..reading.units.units import Dimension, Quantity, in_text
-from ..reading.variation import variation
+from ..reading.variation import numbers_of, variation
 from .at_error import times_at
 from .compare import measured, refuse_unmeasured
 from .comparison_over import AtValue, ComparisonOver
 from .measures import measure_of
-from .plan import (
-    LONGER_REFERENCE,
-    LONGEST_RUN,
-    REPEATS,
-    TOLERANCES,
-    USUAL,
-    Entry,
-    Plan,
-    Values,
-    base_settings,
-    numbers_of,
-    plan_of,
-)
+from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, USUAL, Entry, Plan, Values, base_settings, plan_of
 from .reference import Tell, reference
 from .sweep import Sweep
 
@@ -151,23 +136,3 @@ def _error(error: float | None, measure: str) -> float:
     if error is not None and not error > 0:
         raise InputError(f"error: found {error}, expected more than 0")
     return error or USUAL_ERROR
-
-
-def with_parameter(
-    path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = (), dimension: Dimension | None = None
-) -> Family:
-    """Return a scene as a function of a parameter or any other value in it, SI units; standard input is read once.
-
-    If the dimension of the values is known, the scene rejects another dimension.
-    """
-    if str(path) == STANDARD_INPUT:
-        text = file_text(path)
-        return lambda value: read_scene(text, [*changes, (parameter, _written(value, dimension))], source_name(path))
-    return lambda value: load_scene(path, [*changes, (parameter, _written(value, dimension))])
-
-
-def _written(value: float, dimension: Dimension | None) -> str:
-    """Return a value with its unit, if any; whole numbers without a decimal point, for counts."""
-    if dimension is not None:
-        return str(in_text(Quantity(value, dimension)))
-    return str(int(value)) if value.is_integer() else repr(value)

@@ -13,7 +13,7 @@ from ..errors import InputError, refuse_text
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..reading.did_you_mean import did_you_mean
-from ..reading.variation import FORMS, Range, Variation, variation
+from ..reading.variation import Range, Variation, numbers_of, variation
 from ..solve import SOLVERS
 from ..solve.explicit.projected import TRAITS as SCHEMES
 from ..solve.formulations import FORMULATIONS
@@ -101,8 +101,6 @@ def _entry(name: str, chosen: dict[str, object], settings: RunSettings) -> Entry
 
 
 PER_DECADE = 4
-EVENLY = 5
-"""Default number of values of a range with equal steps."""
 Values = str | Range | Variation | Sequence[float]
 TOLERANCES = tuple(float(f"{10.0**k:.2g}") for k in np.arange(-3, -8.01, -1 / PER_DECADE))
 """Default relative tolerances."""
@@ -166,21 +164,6 @@ def plan_of(
     return Plan(
         tuple(solvers), tuple(formulations), loose_first, steps_first, measure, int(repeats), float(longest)
     )  # fmt: skip
-
-
-def numbers_of(found: Variation, per_decade: int) -> tuple[float, ...]:
-    """Return the values of a variation in increasing order.
-
-    `per_decade`: number of values per decade of a range with equal ratios that has no count. Raises InputError if a
-    value is not a number.
-    """
-    if found.range is not None and not found.values:
-        low, high = found.range.low, found.range.high
-        return found.range.spread(max(round(per_decade * np.log10(high / low)), 1) + 1 if found.range.log else EVENLY)
-    try:
-        return tuple(sorted(map(float, found.values)))
-    except (TypeError, ValueError):
-        raise InputError(f"{found.name}: found {list(found.values)}, expected numbers as {FORMS}") from None
 
 
 def base_settings(model: ModelData, settings: RunSettings | None, changes: Mapping[str, object]) -> RunSettings:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 MOST_VALUES = 10_000_000
+EVENLY = 5
+"""Default number of values of a range with equal steps."""
 FORMS = "FROM:TO:COUNT, FROM:TO:COUNT:log or VALUE,VALUE,..."
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 WITH_UNIT = re.compile(rf"({NUMBER})\s*([^\W\d_][\w /*^()-]*)?")
@@ -109,6 +111,21 @@ def variation(name: str, found: str | Range | Variation | Sequence[object] | Arr
     if not values:
         raise InputError(f"{name}: found no value, expected one or more")
     return Variation(name, values)
+
+
+def numbers_of(found: Variation, per_decade: int, evenly: int = EVENLY) -> tuple[float, ...]:
+    """Return the values of a variation in increasing order.
+
+    `per_decade`: number of values per decade of a range with equal ratios that has no count. `evenly`: number of values of
+    one with equal steps. Raises InputError if a value is not a number.
+    """
+    if found.range is not None and not found.values:
+        low, high = found.range.low, found.range.high
+        return found.range.spread(max(round(per_decade * np.log10(high / low)), 1) + 1 if found.range.log else evenly)
+    try:
+        return tuple(sorted(map(float, found.values)))
+    except (TypeError, ValueError):
+        raise InputError(f"{found.name}: found {list(found.values)}, expected numbers as {FORMS}") from None
 
 
 def _plain(value: object) -> Any:

@@ -138,6 +138,7 @@ KINDS: dict[str, dict[str, dict[str, str]]] = {
     "deformation": {".xdmf": {}},
     "fmu": {".fmu": {}},
     "figure": {".png": MATPLOTLIB, ".svg": MATPLOTLIB, ".pdf": MATPLOTLIB},
+    "Campbell diagram": {".csv": {}, ".png": MATPLOTLIB, ".svg": MATPLOTLIB, ".pdf": MATPLOTLIB},
     "drawing": {".svg": MATPLOTLIB, ".png": MATPLOTLIB, ".pdf": MATPLOTLIB, ".json": {}},
     "animation": {".gif": MATPLOTLIB, ".mp4": MATPLOTLIB, ".html": JINJA},
     "modes in motion": {".html": JINJA},

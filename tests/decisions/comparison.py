@@ -123,9 +123,6 @@ DECISIONS = {
     "comparison.at_error:LineAtError.fewest": most_points_without_a_line,
     "comparison.over:USUAL_ERROR": lambda: over._error(None, "positions"),
     "comparison.plan:PER_DECADE": values_per_decade,
-    "comparison.plan:EVENLY": lambda: plan.numbers_of(
-        Record(values=(), range=Record(low=1.0, high=2.0, log=False, spread=int)), 4
-    ),
     "comparison.plan:REPEATS": lambda: default_of("repeats"),
     "comparison.plan:LONGEST_RUN": lambda: default_of("longest"),
     "comparison.plan:LONGER_REFERENCE": time_of_a_reference,
@@ -151,7 +148,7 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "comparison.at_error:LineAtError.window": 39, "comparison.at_error:LineAtError.fewest": 2, "comparison.over:USUAL_ERROR": 0.0001,
-    "comparison.plan:PER_DECADE": 4, "comparison.plan:EVENLY": 5, "comparison.plan:REPEATS": 9, "comparison.plan:LONGEST_RUN": 20.0,
+    "comparison.plan:PER_DECADE": 4, "comparison.plan:REPEATS": 9, "comparison.plan:LONGEST_RUN": 20.0,
     "comparison.plan:LONGER_REFERENCE": 10.0, "comparison.reference:TIGHT": 1e-12, "comparison.reference:TIGHTER": 1e-13,
     "comparison.reference:NEAR_ENOUGH": 27, "comparison.reference:AGREED": 27, "comparison.reference:FORCES_AGREED": 27,
     "comparison.reference:NO_MOTION": 0.0001, "comparison.reference:RESOLVED": 3.0, "comparison.reference:ROUNDING_OF_A_RUN": 1e-11,

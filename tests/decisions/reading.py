@@ -94,6 +94,9 @@ def accepts_levels(*levels):
 
 
 DECISIONS = {
+    "reading.variation:EVENLY": lambda: variation.numbers_of(
+        Record(values=(), range=Record(low=1.0, high=2.0, log=False, spread=int)), 4
+    ),
     "reading.did_you_mean:LEAST": least_similarity,
     "reading.files.files_read:LARGEST": largest_file,
     "reading.files.include:MOST_FILES": most_included_files,
@@ -118,6 +121,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
+    "reading.variation:EVENLY": 5,
     "reading.did_you_mean:LEAST": 0.65, "reading.files.files_read:LARGEST": 500000000, "reading.files.include:MOST_FILES": 100,
     "reading.files.include:LARGEST": 44, "reading.files.quoted:MOST_QUOTED": 80, "reading.files.quoted:MOST_LISTED": 5,
     "reading.files.read_before:LARGEST": 36, "reading.files.yaml_text:MOST_NESTED": 41,

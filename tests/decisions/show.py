@@ -301,7 +301,8 @@ def most_drawn():
 
 
 def named_bodies(shares):
-    return [*modes_table._bodies(Record(participation={str(k): share for k, share in enumerate(shares)}))]
+    named = modes_table.bodies_of({str(k): share for k, share in enumerate(shares)})
+    return named.split(", ") if named else []
 
 
 def printed_modes():

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from stiffmbs import Range
-from stiffmbs.comparison.plan import numbers_of
 from stiffmbs.errors import InputError
-from stiffmbs.reading.variation import read_variation, variation
+from stiffmbs.reading.variation import numbers_of, read_variation, variation
 from stiffmbs.studies.case_solver import written_scene
 from stiffmbs.studies.parameters import parameter_ranges
 

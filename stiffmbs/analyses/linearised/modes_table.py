@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,7 +17,7 @@ LEAST_SHARE = 0.01
 def mode_rows(modes: Sequence[Mode]) -> list[tuple[str, str, str, str, str]]:
     """Return number, natural frequency, damping ratio, eigenvalues and participating bodies of each mode."""
     return [
-        (str(k), *_frequency_and_damping(mode), _values(mode), ", ".join(_bodies(mode)))
+        (str(k), *_frequency_and_damping(mode), _values(mode), bodies_of(mode.participation))
         for k, mode in enumerate(modes, start=1)
     ]
 
@@ -48,11 +48,9 @@ def _values(mode: Mode) -> str:
     return ", ".join(f"{value.real:.6g}" for value in (one, *others))
 
 
-def _bodies(mode: Mode) -> Iterator[str]:
-    if not mode.participation:
-        yield "states alone"
-    shares = [(name, share) for name, share in mode.participation.items() if share >= LEAST_SHARE]
-    for name, share in shares[:MOST_BODIES]:
-        yield f"{name} {np.round(100 * share):.0f} %"
-    if len(shares) > MOST_BODIES:
-        yield f"and {len(shares) - MOST_BODIES} more"
+def bodies_of(participation: Mapping[str, float]) -> str:
+    """Return the bodies with the largest parts in the kinetic energy as text."""
+    shares = [(name, share) for name, share in participation.items() if share >= LEAST_SHARE]
+    named = [f"{name} {np.round(100 * share):.0f} %" for name, share in shares[:MOST_BODIES]]
+    more = [f"and {len(shares) - MOST_BODIES} more"] if len(shares) > MOST_BODIES else []
+    return ", ".join([*named, *more]) or ("" if participation else "states alone")

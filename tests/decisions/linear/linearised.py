@@ -8,8 +8,9 @@ from unittest.mock import patch
 import numpy as np
 
 from stiffmbs.analyses import far_away, settled, steady
-from stiffmbs.analyses.linearised import kink, modes, transfer
+from stiffmbs.analyses.linearised import campbell, kink, modes, transfer
 from stiffmbs.errors import SolverError
+from stiffmbs.show import campbell as campbell_shown
 from tests.decisions.common import BELOW, Reached, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -180,6 +181,23 @@ def smallest_growth(of_largest):
     return count_while(grows, BELOW)
 
 
+def values_over_a_parameter():
+    with patch.object(campbell, "numbers_of", lambda _, per_decade, evenly: reach(evenly)):
+        return reached(lambda: campbell.campbell("scene", "a", "1:2"))
+
+
+def precision_of_a_crossing():
+    own = Record(_at=nothing, parameter="a")
+    begin, end = Record(value=0.0), Record(value=1.0)
+    with patch.object(campbell, "brentq", lambda *_, xtol: reach(xtol)):
+        return reached(lambda: campbell.Campbell._crossing(own, 1, (begin, 0), end, (1.0, -1.0), nothing))
+
+
+def size_of_a_diagram():
+    with patch.object(campbell_shown, "new_sheet", lambda size: reach(sum(size))):
+        return reached(lambda: campbell_shown.campbell_figure(None))
+
+
 def in_steady_motion(imbalance=0.0):
     """Return the time at which forces of a steady motion of rate 1 are checked, and True if they balance."""
     times = []
@@ -196,6 +214,11 @@ def in_steady_motion(imbalance=0.0):
 
 
 DECISIONS = {
+    "analyses.linearised.campbell:COUNT": values_over_a_parameter,
+    "analyses.linearised.campbell:FINE": precision_of_a_crossing,
+    "show.campbell:SIZE": size_of_a_diagram,
+    "show.campbell:PLANE": lambda: count_while(lambda part: campbell_shown.direction(0.01 * part) == "", DOUBLES),
+    "show.campbell:BEYOND": lambda: campbell_shown._highest(None, 1.0),
     "analyses.far_away:FAR": lambda: farthest_equilibrium(far_away.far_away),
     "analyses.far_away:BEYOND": lambda: farthest_equilibrium(far_away.beyond_its_size),
     "analyses.linearised.modes:AT_REST": largest_acceleration_at_rest,
@@ -220,6 +243,8 @@ DECISIONS = {
     "analyses.steady:VELOCITY_ERROR": lambda: count_while(lambda x: steady._rounded([x], 1.0) != [0.0], BELOW),
 }  # fmt: skip
 EXPECTED = {
+    "analyses.linearised.campbell:COUNT": 51, "analyses.linearised.campbell:FINE": 1e-4, "show.campbell:SIZE": 16, "show.campbell:PLANE": 14,
+    "show.campbell:BEYOND": 1.2,
     "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.linearised.modes:AT_REST": 27,
     "analyses.linearised.modes:UNHURRIED": 6.283185307179586, "analyses.linearised.kink:Moves.wide": 1e-06,
     "analyses.linearised.kink:Moves.narrow": 1e-07, "analyses.linearised.kink:Moves.steep": 44,
