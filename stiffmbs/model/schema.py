@@ -8,6 +8,7 @@ from ..elements.body import SURFACE_LOAD
 from ..elements.body import Body as PlanarBody
 from ..elements.planar_kinds import FORCES, JOINTS
 from ..reading.fields import Described
+from .beams.entries import LOAD, MOVING
 from .parts.definitions import KEYS
 from .parts.options import CHOOSE, OPTIONS
 from .parts.parameters import LIMITS
@@ -31,15 +32,22 @@ def scene_schema() -> dict[str, object]:
     from ..elements.spatial.body import Body as SpatialBody
     from ..elements.spatial.spatial_kinds import FORCES as SPATIAL_FORCES
     from ..elements.spatial.spatial_kinds import JOINTS as SPATIAL_JOINTS
-    from .beams.loads import DistributedLoad
+    from .beams.loads import DistributedLoad, MovingLoad
     from .beams.planar import BeamBody as PlanarBeam
     from .beams.spatial import BeamBody as SpatialBeam
     from .parts.spatial_frame import SpatialUse
     from .spatial_scene import SpatialScene
     from .surface_loads import SurfaceLoad
 
-    planar: list[type[Described]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
-    spatial: list[type[Described]] = [SpatialBody, SpatialBeam, DistributedLoad, SurfaceLoad]
+    planar: list[type[Described]] = [
+        PlanarBody,
+        PlanarBeam,
+        DistributedLoad,
+        MovingLoad,
+        *JOINTS.values(),
+        *FORCES.values(),
+    ]
+    spatial: list[type[Described]] = [SpatialBody, SpatialBeam, DistributedLoad, MovingLoad, SurfaceLoad]
     spatial += [*SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
     scenes: list[type[Described]] = [PlanarScene, SpatialScene]
     uses: list[type[Described]] = [PlanarUse, SpatialUse]
@@ -51,7 +59,8 @@ def scene_schema() -> dict[str, object]:
     for scene, beam in ((PlanarScene, PlanarBeam), (SpatialScene, SpatialBeam)):
         whole = schema["$defs"][found[scene, "validation"]["$ref"].rpartition("/")[2]]
         contact = schema["$defs"]["Contact" if beam is PlanarBeam else "SphereContact"]
-        _add_beams(whole["properties"], found[beam, "validation"], found[DistributedLoad, "validation"], contact)
+        loads = {kind: found[load, "validation"] for kind, load in ((LOAD, DistributedLoad), (MOVING, MovingLoad))}
+        _add_beams(whole["properties"], found[beam, "validation"], loads, contact)
         if scene is SpatialScene:
             forces, load = whole["properties"]["forces"]["additionalProperties"], found[SurfaceLoad, "validation"]
             forces["oneOf"].append(load)
@@ -64,16 +73,16 @@ def scene_schema() -> dict[str, object]:
 
 
 def _add_beams(
-    properties: JsonSchemaValue, beam: dict[str, object], load: dict[str, object], contact: JsonSchemaValue
+    properties: JsonSchemaValue, beam: dict[str, object], loads: dict[str, JsonSchemaValue], contact: JsonSchemaValue
 ) -> None:
-    """Add line bodies, distributed loads and contacts of beams to the sections of a scene."""
+    """Add line bodies, loads and contacts of beams to the sections of a scene."""
     bodies, forces = properties["bodies"], properties["forces"]["additionalProperties"]
     bodies["additionalProperties"] = {"anyOf": [bodies["additionalProperties"], {**beam, "required": ["type"]}]}
     named = {**contact["properties"], "type": {"const": "beam_contact"}, "beam": {"type": "string"}}
     named.pop("i")
     required = [key for key in contact["required"] if key != "i"]
-    forces["oneOf"] += [load, {**contact, "properties": named, "required": [*required, "type", "beam"]}]
-    forces["discriminator"]["mapping"]["distributed_load"] = load["$ref"]
+    forces["oneOf"] += [*loads.values(), {**contact, "properties": named, "required": [*required, "type", "beam"]}]
+    forces["discriminator"]["mapping"] |= {kind: load["$ref"] for kind, load in loads.items()}
 
 
 def _add_parts(definitions: JsonSchemaValue, scene: JsonSchemaValue, use: JsonSchemaValue) -> None:

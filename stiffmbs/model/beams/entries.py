@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection, Mapping
 
 from ...reading.files.yaml_text import Content
 
-LOAD, CONTACT = "distributed_load", "beam_contact"
-"""Types of the forces on all nodes of a beam."""
+LOAD, MOVING, CONTACT = "distributed_load", "moving_load", "beam_contact"
+"""Types of the forces on the nodes of a beam."""
 
 
 def with_beams(
@@ -26,7 +26,7 @@ def with_beams(
     be read, or one of its names is taken.
     """
     bodies, forces = sections.get("bodies"), sections.get("forces")
-    if not (_any(bodies, lambda kind: True) or _any(forces, lambda kind: kind in (LOAD, CONTACT))):
+    if not (_any(bodies, lambda kind: True) or _any(forces, lambda kind: kind in (LOAD, MOVING, CONTACT))):
         return sections
     from .expand import expand_beams
 

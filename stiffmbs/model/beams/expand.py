@@ -14,9 +14,9 @@ from ..model_data import RESERVED
 from .beam import Beam
 from .discretise import Line
 from .division import record_beams
-from .entries import CONTACT, LOAD
+from .entries import CONTACT, LOAD, MOVING
 from .expanded import expanded
-from .loads import DistributedLoad, node_contacts, node_forces
+from .loads import DistributedLoad, MovingLoad, moving_forces, node_contacts, node_forces
 from .planar import BeamBody as PlanarBeam
 from .spatial import BeamBody as SpatialBeam
 
@@ -88,16 +88,19 @@ def _loads(
     parameters: Mapping[str, object],
     names: Collection[str],
 ) -> dict[str, object]:
-    """Return the forces of a distributed load or a contact of a beam; other forces as they are."""
+    """Return the forces of a load or a contact of a beam; other forces as they are."""
     if not isinstance(entry, dict):
         return {name: entry}
     kind = entry.get("type")
     if kind == CONTACT:
         return node_contacts(name, entry, lines, where, "sphere_contact" if dimensions == 3 else "contact")
-    if kind != LOAD:
+    if kind not in (LOAD, MOVING):
         return {name: entry}
+    context = {"parameters": parameters}
     with located(where):
-        load = DistributedLoad.model_validate(entry, context={"parameters": parameters})
+        if kind == MOVING:
+            return moving_forces(name, MovingLoad.model_validate(entry, context=context), lines, where)
+        load = DistributedLoad.model_validate(entry, context=context)
     return node_forces(name, load, lines, where, {*parameters, *names})
 
 

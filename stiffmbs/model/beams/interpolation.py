@@ -57,17 +57,22 @@ class Group:
         The weights, shape (points, p + 1), are times the nodes' shapes: the polynomials of a spectral group, and linear
         between the nodes of others.
         """
-        if self.sections:
-            return _of_polynomials(self.nodes, lower, upper)
         places, weights = [], []
-        for k in range(len(self.nodes) - 1):
-            ends = self.nodes[k : k + 2]
-            inside = np.clip((lower, upper), *ends)
+        for k, nodes in self.polynomials():
+            inside = np.clip((lower, upper), nodes[0], nodes[-1])
             if inside[0] < inside[1]:
-                at, own = _of_polynomials(ends, *inside)
+                at, own = _of_polynomials(nodes, *inside)
                 places.append(at)
-                weights.append(np.pad(own, ((0, 0), (k, len(self.nodes) - k - 2))))
+                weights.append(np.pad(own, ((0, 0), (k, len(self.nodes) - k - len(nodes)))))
         return np.concatenate(places), np.concatenate(weights)
+
+    def polynomials(self) -> Iterator[tuple[int, np.ndarray]]:
+        """Yield the parts with common polynomials: the number of the first node and the nodes of each."""
+        if self.sections:
+            yield 0, self.nodes
+            return
+        for k in range(len(self.nodes) - 1):
+            yield k, self.nodes[k : k + 2]
 
     @property
     def reference(self) -> int:
@@ -94,11 +99,16 @@ class Group:
         return cls(np.linspace(0, 1, count + 1), node_weights(count) / count, ())
 
 
+def shapes(nodes: np.ndarray) -> np.ndarray:
+    """Return the coefficients of the polynomials that are 1 at one of the nodes and 0 at others, a column for each, highest power first."""
+    return np.linalg.inv(np.vander(nodes, len(nodes)))
+
+
 def _of_polynomials(nodes: np.ndarray, lower: float, upper: float) -> tuple[np.ndarray, np.ndarray]:
     """Return Gauss points between two places, and their weights times the polynomials that are 1 at one of the nodes."""
     points, weights = legendre.leggauss(len(nodes))
     places = lower + (upper - lower) * (1 + points) / 2
-    values = np.vander(places, len(nodes)) @ np.linalg.inv(np.vander(nodes, len(nodes)))
+    values = np.vander(places, len(nodes)) @ shapes(nodes)
     return places, (upper - lower) / 2 * weights[:, None] * values
 
 

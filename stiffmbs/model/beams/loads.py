@@ -1,9 +1,9 @@
-"""Distributed loads on beams and their contacts, as forces at their nodes."""
+"""Distributed and moving loads on beams, and their contacts, as forces at their nodes."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator
@@ -14,25 +14,24 @@ from ...reading.fields import Described
 from ...reading.files.quoted import quoted
 from ...reading.units import si
 from .discretise import SAME, Line
+from .interpolation import shapes
 
 PLACE = "x"
 """Name in formulas of the distance from the start of a beam."""
 _PLACE = re.compile(rf"(?<![\w.]){PLACE}(?![\w.]|\s*\()")
 
 
-class DistributedLoad(Described):
-    """Force per length along a beam or a part of it: an entry of the forces of a scene.
+Component = Annotated[float, Field(strict=True, allow_inf_nan=False)] | str
+
+
+class _Load(Described):
+    """Load on a beam: an entry of the forces of a scene.
 
     It becomes one force for each node, with the name of the node after its own and a dot.
     """
 
-    type: Literal["distributed_load"] = "distributed_load"
     beam: str = Field(description="name of the beam")
-    force: tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)] | str, ...] = Field(
-        description="components per length, N/m: numbers or formulas of time, of measured quantities and of x, the distance from the start along the axis, m"
-    )
-    first: si.Length | None = Field(None, description="x at the start of the load, m; the start of the beam by default")
-    last: si.Length | None = Field(None, description="x at the end of the load, m; the end of the beam by default")
+    force: tuple[Component, ...]
     axes: Literal["ground", "section"] = Field(
         "ground",
         description="axes of the components: the ground's, or those of the section, which rotate with the node",
@@ -44,6 +43,34 @@ class DistributedLoad(Described):
         if len(force) not in (2, 3):
             raise ValueError(f"found {len(force)} components, expected two in the plane or three in space")
         return force
+
+    def at(self, node: str, components: list[float | str]) -> dict[str, object]:
+        """Return the force at a node as an entry of a scene."""
+        axes = {"axes": "body"} if self.axes == "section" else {}
+        return {"type": "force", "i": f"{self.beam}.{node}", "force": components, **axes}
+
+
+class DistributedLoad(_Load):
+    """Force per length along a beam or a part of it."""
+
+    type: Literal["distributed_load"] = "distributed_load"
+    force: tuple[Component, ...] = Field(
+        description="components per length, N/m: numbers or formulas of time, of measured quantities and of x, the distance from the start along the axis, m"
+    )
+    first: si.Length | None = Field(None, description="x at the start of the load, m; the start of the beam by default")
+    last: si.Length | None = Field(None, description="x at the end of the load, m; the end of the beam by default")
+
+
+class MovingLoad(_Load):
+    """Force at a place that moves along a beam, such as a wheel on a bridge."""
+
+    type: Literal["moving_load"] = "moving_load"
+    force: tuple[Component, ...] = Field(
+        description="components, N: numbers or formulas of time and of measured quantities"
+    )
+    place: Component = Field(
+        description="distance of the force from the start along the axis, m: a formula of time and of measured quantities; there is no force beyond the ends"
+    )
 
 
 def node_forces(
@@ -67,13 +94,43 @@ def node_forces(
         raise InputError(
             f"{where}: found a load from {first:g} to {last:g} m, expected a part of the beam, 0 to {total:g} m"
         )
-    axes = {"axes": "body"} if load.axes == "section" else {}
     return {
-        f"{name}.{node.name}": {
-            "type": "force", "i": f"{load.beam}.{node.name}", "force": [_times(part, lengths) for part in load.force], **axes
-        }
-        for node, lengths in zip(line.nodes, line.shares(first, last), strict=True) if lengths
-    }  # fmt: skip
+        f"{name}.{node.name}": load.at(node.name, [_times(part, lengths) for part in load.force])
+        for node, lengths in zip(line.nodes, line.shares(first, last), strict=True)
+        if lengths
+    }
+
+
+def moving_forces(name: str, load: MovingLoad, lines: Mapping[str, Line], where: str) -> dict[str, object]:
+    """Return the nodal forces of a moving load, as entries of a scene: the load times the shape of the node at its place.
+
+    Raises InputError if the load names an unknown beam.
+    """
+    line = _line(load.beam, lines, where)
+    shares: list[list[str]] = [[] for _ in line.nodes]
+    for span in line.spans:
+        length = span.end - span.start
+        for first, fractions in span.group.polynomials():
+            start, end = (line.nodes[span.first + first + k].s for k in (0, len(fractions) - 1))
+            to = f"(({load.place}) + 0 m - ({start!r} m))"
+            is_last = span.first + first + len(fractions) == len(line.nodes)
+            for k, column in enumerate(shapes((fractions - fractions[0]) * length / (end - start)).T.tolist()):
+                shares[span.first + first + k].append(_within(to, end - start, column, is_last))
+    return {
+        f"{name}.{node.name}": load.at(node.name, [f"({' + '.join(share)})*(({part}) + 0 N)" for part in load.force])
+        for node, share in zip(line.nodes, shares, strict=True)
+    }
+
+
+def _within(to: str, length: float, coefficients: Sequence[float], is_last: bool) -> str:
+    """Return a polynomial of a place, relative to a length of the beam, within it and 0 beyond; highest power first.
+
+    The end belongs to the next part, and that of the last part to the beam.
+    """
+    value = repr(coefficients[0])
+    for coefficient in coefficients[1:]:
+        value = f"({value}*{to}/({length!r} m) + {coefficient!r})"
+    return f"branch({to}, 0, {value}, branch(({length!r} m) - {to}, 0, {value if is_last else '0'}, {value}))"
 
 
 def node_contacts(
