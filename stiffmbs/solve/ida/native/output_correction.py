@@ -100,7 +100,7 @@ def _are_closed(b):
 def _is_balanced(b):
     """Return True if forces balance and joints are closed.
 
-    Where they are not, a correction by known factors costs less than the projection of `_left`, one by new factors more.
+    Where they are not, a correction costs less than the projection of `_left`, as its factors serve many output times.
     """
     return _are_closed(b) and _unbalanced(b, b.defect) <= 1.0
 
@@ -259,7 +259,7 @@ def corrected(output_correction, state, equations, t, step):
         return True
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
-    if b.factored > 0.0:
+    if b.factored > 0.0 or _factored(b, s, e, t, b.current):
         if _remaining(b, s, e, t, False) == 0.0 and _is_near(b, e, t):
             return True
         _placed(b, t)
