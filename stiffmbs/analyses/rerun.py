@@ -56,7 +56,7 @@ SHORTENED = NoteKind(
     MISSED + "; the run was repeated with max_step {max_step:.2g} s",
     severity=Severity.REMARK,
 )
-LEFT = NoteKind(
+STILL_MISSED = NoteKind(
     "missed-event", MISSED + "; the results may be wrong from there on", "set max_step to a much smaller value",
     Severity.DOUBT,
 )  # fmt: skip
@@ -97,7 +97,7 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> C
             break
         found, left = again, _overlooked(job, again)
     if left is not None:
-        return _noted(found, left.note(LEFT))
+        return _noted(found, left.note(STILL_MISSED))
     if not missed:
         return found
     return _noted(found, missed[0].note(SHORTENED if shortens else RESTARTED, _longest_step(missed)))

@@ -335,7 +335,7 @@ class _AutoRun:
             steps = counted.since(last)
             if NOT_ASKED < work.stable < work.h:  # the bound keeps the steps shorter than those counted as limited
                 steps = steps._replace(limited=steps.accepted)
-            return not (self._returns(steps, work.t) or self._tries_later(steps, counted, work))
+            return not (self._resumes_implicit(steps, work.t) or self._tries_implicit(steps, counted, work))
 
         integrator = Integrator(dynamics, settings, engine)
         trajectory = engine.ended(integrated(integrator, start, grid, self._watch, stays))
@@ -396,7 +396,7 @@ class _AutoRun:
 
         return self._confirmed(pays) and self._switched(f" (fastest rate {rates.fastest:.3g} 1/s)", rate)
 
-    def _tries_later(self, steps: Counted, segment: Counted, work: Integration) -> bool:
+    def _tries_implicit(self, steps: Counted, segment: Counted, work: Integration) -> bool:
         """Return True to try the implicit integrator, because stability limits explicit steps.
 
         `steps`: those since the last check. `segment`: those of the whole segment.
@@ -414,7 +414,7 @@ class _AutoRun:
         pays = self._confirmed(lambda: min(saving, self.remaining(t) * rate) > self._justifying(t))
         return pays and self._switched(f" from t = {t:.4g} s on ({why})", rate)
 
-    def _returns(self, steps: Counted, t: float) -> bool:
+    def _resumes_implicit(self, steps: Counted, t: float) -> bool:
         """Return True to resume the implicit integrator, because explicit steps cost more."""
         if not self.remaining(t) * (steps.rate - self._return_ratio * self._implicit_rate) > self.implicit.start:
             return False
