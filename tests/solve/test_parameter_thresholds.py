@@ -190,7 +190,7 @@ def events_to_a_rate():
     """Return the number of events, in fast succession, after which a run is stopped."""
     job, monitor = watched()
     return count_while(
-        lambda k: not raised(lambda: monitor.note_event(1e-9 * k, job.start.q, job.start.u, 0)), range(5000)
+        lambda k: not raised(lambda: monitor.note_event(1e-9 * k, lambda: (job.start.q, job.start.u), 0)), range(5000)
     )
 
 
@@ -200,7 +200,7 @@ def longest_run_with_events():
     def is_allowed(end):
         job, monitor = watched(1e-6 * end)
         return not any(
-            raised(lambda t=1e-6 * k: monitor.note_event(t, job.start.q, job.start.u, 0)) for k in range(1600)
+            raised(lambda t=1e-6 * k: monitor.note_event(t, lambda: (job.start.q, job.start.u), 0)) for k in range(1600)
         )
 
     return count_while(is_allowed, DOUBLES[40:140])
