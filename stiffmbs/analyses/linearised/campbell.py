@@ -160,36 +160,40 @@ class Campbell(CampbellMethods):
                 sides = measure(a.value, a.modes[one]), measure(b.value, b.modes[other])
                 crosses = (sides[0] < 0.0) != (sides[1] < 0.0) and not np.isnan(sides).any()
                 if crosses and max(map(abs, sides)) > rounding:
-                    found.append(self._crossing(number, (a, one), b, sides, measure))
+                    found.append(self._crossing(number, {a.value: (a, one), b.value: (b, other)}, measure))
         yield from sorted(found, key=lambda each: each.value)
 
     def _crossing(
-        self, number: int, begin: tuple[Found, int], end: Found, sides: tuple[float, float],
-        measure: Callable[[float, Mode], float],
-    ) -> Crossing:  # fmt: skip
-        """Return the zero of a measure between neighbouring values, by modes at values between them."""
-        a, mode = begin
-        known = {a.value: (a, mode)}
+        self, number: int, known: dict[float, tuple[Found, int]], measure: Callable[[float, Mode], float]
+    ) -> Crossing:
+        """Return the zero of a measure between neighbouring values, by modes at values between them; `known`: those of the ends."""
 
-        def at(value: float) -> float:
-            if value == a.value:
-                return sides[0]
-            if value == end.value:
-                return sides[1]
-            between = self._at(value)
-            near = continued([a.modes[mode]], [a.modes[mode].eigenvalues[0]], between.modes, a.scale)[0]
-            known[value] = between, near
-            found = measure(value, between.modes[near])
-            if np.isnan(found):
+        def measured(value: float) -> float:
+            if value not in known:
+                (found, mode), between = nearest(value), self._at(value)
+                before = found.modes[mode]
+                same = continued([before], [before.eigenvalues[0]], between.modes, found.scale)
+                known[value] = between, same[0]
+            found, mode = known[value]
+            result = measure(value, found.modes[mode])
+            if np.isnan(result):
                 raise SolverError(f"mode {number} does not oscillate at {self.parameter} = {value:g}")
-            return found
+            return result
 
+        def nearest(value: float) -> tuple[Found, int]:
+            return known[min(known, key=lambda each: abs(each - value))]
+
+        low, high = sorted(known)
+        sides = measured(low), measured(high)
+        by_line = low + (high - low) * sides[0] / (sides[0] - sides[1])
         try:
-            value = float(brentq(at, a.value, end.value, xtol=FINE * (end.value - a.value)))
-        except (AssemblyError, SolverError):  # no such mode between: by interpolation
-            value = a.value + (end.value - a.value) * sides[0] / (sides[0] - sides[1])
-        found, near = known[min(known, key=lambda each: abs(each - value))]
-        return Crossing(value, number, found.modes[near].frequency, found.whirl[near], sides[1] > sides[0])
+            value = float(brentq(measured, low, high, xtol=FINE * (high - low)))
+            if abs(measured(value)) > np.sqrt(FINE) * max(map(abs, sides)):  # a jump to another mode
+                value = by_line
+        except (AssemblyError, SolverError):  # no such mode between
+            value = by_line
+        found, mode = nearest(value)
+        return Crossing(value, number, found.modes[mode].frequency, found.whirl[mode], sides[1] > sides[0])
 
     def __repr__(self) -> str:
         return f"<Campbell {self.name or 'model'}: {len(self.branches)} modes over {self.parameter}, {len(self.values)} values>"

@@ -187,10 +187,10 @@ def values_over_a_parameter():
 
 
 def precision_of_a_crossing():
-    own = Record(_at=nothing, parameter="a")
-    begin, end = Record(value=0.0), Record(value=1.0)
+    own, found = Record(_at=nothing, parameter="a"), Record(modes=(None,))
+    ends = {0.0: (found, 0), 1.0: (found, 0)}
     with patch.object(campbell, "brentq", lambda *_, xtol: reach(xtol)):
-        return reached(lambda: campbell.Campbell._crossing(own, 1, (begin, 0), end, (1.0, -1.0), nothing))
+        return reached(lambda: campbell.Campbell._crossing(own, 1, ends, lambda value, _: 0.5 - value))
 
 
 def size_of_a_diagram():
