@@ -43,7 +43,7 @@ def campbell_text(found: Campbell, orders: Sequence[float] | None = None) -> str
         ends = (_shown(value) for value in branch.frequencies[[0, -1]])
         way = direction(float(np.nanmedian(branch.whirl))) if not np.isnan(branch.whirl).all() else ""
         lines.append(
-            f"{k:>4}  {next(ends):>14}  {next(ends):>14}  {_least(branch):>14}  {way:<9}  {bodies_of(branch.participation)}".rstrip()
+            f"{k:>4}  {next(ends):>14}  {next(ends):>14}  {_least(branch, found.rounding):>14}  {way:<9}  {bodies_of(branch.participation)}".rstrip()
         )
     if len(found.branches) > ON_A_SCREEN:
         lines.append(f"and {len(found.branches) - ON_A_SCREEN} more modes")
@@ -67,8 +67,11 @@ def _shown(value: float) -> str:
     return "-" if np.isnan(value) else f"{value:.6g}"
 
 
-def _least(branch: Branch) -> str:
+def _least(branch: Branch, rounding: float) -> str:
+    """Return the least damping ratio, or ``unstable`` if a motion without oscillation grows."""
     known = branch.damping_ratios[~np.isnan(branch.damping_ratios)]
+    if np.any((branch.growth > rounding) & (branch.frequencies == 0.0)):
+        return "unstable"
     return (f"{known.min():.4g}" if abs(known.min()) > GROWING else "0") if len(known) else "-"
 
 

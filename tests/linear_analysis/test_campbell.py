@@ -205,6 +205,38 @@ def test_wrong_options_are_refused_in_a_sentence(rigid, options, words):
     assert words in refused.output
 
 
+ONE = """
+name: One mass
+gravity: [0, 0]
+parameters: {k: 100 N/m, c: 0 N s/m}
+bodies: {a: {mass: 1, inertia: 1}}
+joints: {guide: {type: prismatic, i: a, j: ground}}
+forces: {f: {type: spring_damper, i: a, j: {body: ground, point: [-1, 0]}, stiffness: k, free_length: 1 m, damping: c}}
+"""
+
+
+def test_a_mass_on_a_spring_is_unstable_below_no_stiffness_and_overdamped_above_a_limit(tmp_path):
+    path = tmp_path / "one.yaml"
+    path.write_text(ONE)
+    by_stiffness = stiffmbs.campbell(path, "k", "-50:200 N/m:6")
+    (limit,) = by_stiffness.limits()
+    assert (limit.value, limit.growing) == (pytest.approx(0.0, abs=1e-3), False)
+    assert "unstable" in by_stiffness.table()
+    by_damping = stiffmbs.campbell(path, "c", "0:40:9")  # critical at 20 N s/m
+    assert by_damping.limits() == ()
+    expected = np.sqrt(np.maximum(100 - by_damping.values**2 / 4, 0.0)) / (2 * np.pi)
+    (branch,) = by_damping.branches
+    np.testing.assert_allclose(branch.frequencies, expected, atol=1e-9)
+    np.testing.assert_allclose(branch.damping_ratios, by_damping.values / 20, atol=1e-9)
+
+
+def test_a_note_on_a_state_is_made_once():
+    """Values and positions differ from one value to the next."""
+    scene = "examples/flexible/flexible_slider_crank.yaml"
+    found = stiffmbs.campbell(scene, "bodies.crank.mass", [1.0, 1.5, 2.0])
+    assert len([note for note in found.notes if "not an equilibrium" in note]) == 1
+
+
 def test_a_single_value_is_refused(rigid):
     with pytest.raises(InputError, match="spin: found one value"):
         stiffmbs.campbell(rigid, "spin", [1.0])

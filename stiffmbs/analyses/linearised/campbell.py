@@ -17,7 +17,7 @@ from ...linear_analysis.branches import continued, whirl
 from ...linear_analysis.modes import Mode
 from ...methods import CampbellMethods
 from ...model.settings import RunSettings, Settings, takes_settings
-from ...notes import NoteKind, Severity
+from ...notes import Note, NoteKind, Severity
 from ...reading.units.units import DIMENSIONS, named_unit
 from ...reading.variation import Range, Variation, numbers_of, variation
 from ..job import Runnable, data_of
@@ -35,6 +35,8 @@ LEFT_OUT = NoteKind(
     "campbell-value-left-out", "no modes at {parameter} = {value:.6g}: {reason}", severity=Severity.REMARK
 )
 Tell = Callable[[str], None]
+Measure = Callable[[float, Mode], float]
+"""Number of a mode at a value of the parameter."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,8 @@ class Branch:
     eigenvalues : array, shape (n,)
         Eigenvalue with positive imaginary part at each value, 1/s; NaN where the mode does not exist.
     damping_ratios : array, shape (n,)
+    growth : array, shape (n,)
+        Largest real part of the eigenvalues of the mode, 1/s.
     whirl : array, shape (n,)
         1 for forward whirl on circles, -1 for backward whirl, 0 for motion in a plane; NaN without rotation.
     participation : mapping of str to float
@@ -64,6 +68,7 @@ class Branch:
 
     eigenvalues: np.ndarray
     damping_ratios: np.ndarray
+    growth: np.ndarray
     whirl: np.ndarray
     participation: dict[str, float]
 
@@ -144,13 +149,22 @@ class Campbell(CampbellMethods):
 
         return tuple(self._crossings(above_line))
 
-    def limits(self) -> tuple[Crossing, ...]:
-        """Return the limits of stability: where the largest real part of a mode's eigenvalues changes its sign."""
+    @property
+    def rounding(self) -> float:
+        """Real part, 1/s, up to which an eigenvalue counts as one without growth."""
         sizes = [abs(value) for found in self._found for mode in found.modes for value in mode.eigenvalues]
-        return tuple(self._crossings(_growth, GROWING * max(sizes, default=0.0)))
+        return GROWING * max(sizes, default=0.0)
 
-    def _crossings(self, measure: Callable[[float, Mode], float], rounding: float = 0.0) -> Iterator[Crossing]:
-        """Yield the zeros of a measure of the modes that exceeds rounding on a side, in increasing order of the value."""
+    def limits(self) -> tuple[Crossing, ...]:
+        """Return the limits of stability: where the largest real part of a mode's eigenvalues becomes positive, or no longer is."""
+        rounding = self.rounding
+        return tuple(self._crossings(lambda _, mode: _growth(mode) - rounding, lambda _, mode: _growth(mode)))
+
+    def _crossings(self, measure: Measure, exact: Measure | None = None) -> Iterator[Crossing]:
+        """Yield the zeros of a measure of the modes, in increasing order of the value.
+
+        `exact`: the same without an allowance for rounding, whose zeros are taken where its signs differ.
+        """
         found = []
         for number, branch in enumerate(self._numbers, start=1):
             for k, (one, other) in enumerate(pairwise(branch)):
@@ -158,14 +172,13 @@ class Campbell(CampbellMethods):
                     continue
                 a, b = self._found[k], self._found[k + 1]
                 sides = measure(a.value, a.modes[one]), measure(b.value, b.modes[other])
-                crosses = (sides[0] < 0.0) != (sides[1] < 0.0) and not np.isnan(sides).any()
-                if crosses and max(map(abs, sides)) > rounding:
-                    found.append(self._crossing(number, {a.value: (a, one), b.value: (b, other)}, measure))
+                if (sides[0] < 0.0) != (sides[1] < 0.0) and not np.isnan(sides).any():
+                    of_ends = (exact(a.value, a.modes[one]), exact(b.value, b.modes[other])) if exact else sides
+                    chosen = exact if exact and of_ends[0] * of_ends[1] < 0.0 else measure
+                    found.append(self._crossing(number, {a.value: (a, one), b.value: (b, other)}, chosen))
         yield from sorted(found, key=lambda each: each.value)
 
-    def _crossing(
-        self, number: int, known: dict[float, tuple[Found, int]], measure: Callable[[float, Mode], float]
-    ) -> Crossing:
+    def _crossing(self, number: int, known: dict[float, tuple[Found, int]], measure: Measure) -> Crossing:
         """Return the zero of a measure between neighbouring values, by modes at values between them; `known`: those of the ends."""
 
         def measured(value: float) -> float:
@@ -225,7 +238,7 @@ class Campbell(CampbellMethods):
         return asked if asked is not None else (1.0,) if self.is_speed else ()
 
 
-def _growth(value: float, mode: Mode) -> float:
+def _growth(mode: Mode) -> float:
     """Return the largest real part of the eigenvalues, 1/s."""
     return max(each.real for each in mode.eigenvalues)
 
@@ -294,7 +307,7 @@ def campbell(
         raise InputError(f"{parameter}: found one value, expected two or more")
     made = model if callable(model) else with_parameter(model, parameter, changes, varied.dimension)
     at_value = partial(_at_value, made, partial(modes, settings=settings, at=at, **other))
-    found, notes = list[Found](), list[str]()
+    found, notes = list[Found](), list[Note]()
     refused: Exception | None = None
     for value in numbers:
         if tell:
@@ -306,7 +319,8 @@ def campbell(
             notes.append(LEFT_OUT("", parameter=parameter, value=value, reason=str(reason)))
             continue
         found.append(one)
-        notes += [note for note in of_state if note not in notes]
+        kinds = {(note.kind, note.element) for note in notes}
+        notes += [note for note in of_state if (note.kind, note.element) not in kinds]
     if not found:
         raise refused or InputError(f"{parameter}: found no values")
     name, unit = data_of(made(numbers[0])).name, named_unit(varied.dimension) if varied.dimension else ""
@@ -319,7 +333,7 @@ def campbell(
 
 def _at_value(
     made: Callable[[float], Runnable], compute: Callable[[Runnable], Modes], value: float
-) -> tuple[Found, Sequence[str]]:
+) -> tuple[Found, Sequence[Note]]:
     """Return the modes at a value of the parameter, and the notes on its state."""
     found = compute(made(value))
     system, dynamics = found.about.dynamics.system, found.about.dynamics
@@ -332,7 +346,7 @@ def _at_value(
         )
     else:
         directions = (float("nan"),) * len(found.modes)
-    return Found(value, found.modes, directions, scale), found.notes
+    return Found(value, found.modes, directions, scale), [Note.of(note) for note in found.notes]
 
 
 def _joined(found: Sequence[Found]) -> Iterator[tuple[int | None, ...]]:
@@ -374,6 +388,7 @@ def _branch(found: Sequence[Found], numbers: Sequence[int | None]) -> Branch:
     return Branch(
         column(lambda one, k: one.modes[k].eigenvalues[0], complex),
         column(lambda one, k: one.modes[k].damping_ratio, float),
+        column(lambda one, k: _growth(one.modes[k]), float),
         column(lambda one, k: one.whirl[k], float),
         first[0].modes[first[1]].participation,
     )
