@@ -62,6 +62,15 @@ from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
+from .evaluation.bearing_loads import DrivingAngle as DrivingAngle
+from .evaluation.bearing_loads import driving_angle as driving_angle
+from .evaluation.bearing_loads import in_body_axes as in_body_axes
+from .evaluation.cycle import Cycle as Cycle
+from .evaluation.cycle import cycle as cycle
+from .evaluation.loads import Load as Load
+from .evaluation.loads import loads as loads
+from .evaluation.peaks import Peak as Peak
+from .evaluation.peaks import peaks as peaks
 from .analyses.check import Report as Report
 from .analyses.check import check as check
 from .analyses.equilibrium import equilibrium as equilibrium

@@ -59,6 +59,15 @@ from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
+from .evaluation.bearing_loads import DrivingAngle as DrivingAngle
+from .evaluation.bearing_loads import driving_angle as driving_angle
+from .evaluation.bearing_loads import in_body_axes as in_body_axes
+from .evaluation.cycle import Cycle as Cycle
+from .evaluation.cycle import cycle as cycle
+from .evaluation.loads import Load as Load
+from .evaluation.loads import loads as loads
+from .evaluation.peaks import Peak as Peak
+from .evaluation.peaks import peaks as peaks
 from .live.page import open as open
 from .model.model import Model as Model
 from .model.read_scene import read_scene as read_scene

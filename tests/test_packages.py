@@ -15,7 +15,7 @@ import stiffmbs
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
     "cache", "reading", "flexible_bodies", "elements", "model", "adams", "robots", "cad", "compile", "presolve", "sparse", "dynamics", "solve", "equilibria", "sensitivity_equations", "linear_analysis", "redundancy",
-    "results", "run_checks", "error_estimate", "analyses", "verification", "studies", "show", "comparison", "real_time", "live", "commands",
+    "results", "run_checks", "error_estimate", "analyses", "verification", "evaluation", "studies", "show", "comparison", "real_time", "live", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts", "methods", "notes", "processes", "solver_names", "tuning"}

@@ -42,9 +42,7 @@ def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> 
         again: OutputRows | None = _at_nodes(job, steps, nodes) if len(steps) else None
         if again is None:
             return found
-        balance = balance_of_steps(
-            again, *_weights_and_jumps(job, steps, again, nodes), job.dynamics.system.keeps_energy
-        )
+        balance = balance_of_steps(job.dynamics.system, again, *_weights_and_jumps(job, steps, again, nodes))
         if not is_broken(job.dynamics.system, balance, again, job.settings):
             if rows.t[-1] - steps[-1, 1] <= SHORTEST * np.spacing(rows.t[-1]):
                 return balance, again

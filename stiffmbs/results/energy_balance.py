@@ -11,7 +11,8 @@ run is repeated with rows at the nodes of a Gauss-Lobatto quadrature within each
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,6 +22,25 @@ from ..dynamics.dynamics import OutputRows
 
 MOST_INSTANTS = 100_000
 """Number of instants of a balance at most; of more, only every second (or third, ...) is used."""
+
+
+@dataclass(frozen=True)
+class ElementEnergy:
+    """Energy that an element exchanges with the mechanism over a run, J.
+
+    Attributes
+    ----------
+    stored : float
+        Change of its potential energy: of a spring, or of a body by gravity.
+    supplied : float
+        Work of its other forces while they drive the mechanism, as those of a motor.
+    dissipated : float
+        Work that its other forces take from the mechanism while they resist it, as those of a damper.
+    """
+
+    stored: float
+    supplied: float
+    dissipated: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +53,7 @@ class Balance:
     scale: float  # exchanged energy: the largest kinetic energy, change of the potential energy, or work
     keeps_energy: bool  # True if no non-conservative force exists: the work is then zero, not computed
     within_steps: bool = False  # True if the work is a quadrature within each step of the solver
+    elements: Mapping[str, ElementEnergy] = field(default_factory=dict)  # of those that store energy or do work
 
     def __repr__(self) -> str:
         change, work = (float(values[-1]) for values in (self.change, self.work))
@@ -64,20 +85,19 @@ class Balance:
 
 def energy_balance(system: System, rows: OutputRows) -> Balance:
     """Return the balance at the instants of a run; those without values are skipped."""
-    thinned, keeps_energy = slice(None, None, 1 + len(rows.t) // MOST_INSTANTS), system.keeps_energy
+    keeps_energy, rows = system.keeps_energy, rows.at(slice(None, None, 1 + len(rows.t) // MOST_INSTANTS))
     with np.errstate(all="ignore"):  # a diverged run has no balance
-        t, kinetic = rows.t[thinned], rows.kinetic[thinned]
-        potential, power = rows.potential[thinned], rows.power[thinned]
-        finite, increasing = np.isfinite(kinetic + potential + power), t[1:] > t[:-1]
+        finite = np.isfinite(rows.kinetic + rows.potential + rows.power)
+        increasing = rows.t[1:] > rows.t[:-1]
         if not (finite.all() and increasing.all()):
-            known = finite & np.append(True, increasing)[: len(t)]
-            t, kinetic, potential, power = t[known], kinetic[known], potential[known], power[known]
+            rows = rows.at(finite & np.append(True, increasing)[: len(rows.t)])
+        t, total = rows.t, rows.kinetic + rows.potential
         if not len(t):
             return Balance(t, np.zeros(1), np.zeros(1), 0.0, keeps_energy)
-        total = kinetic + potential
-        work = np.zeros_like(t) if keeps_energy else work_since_start(t, power)
-        scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
-    return Balance(t, total - total[0], work, scale, keeps_energy)
+        work = np.zeros_like(t) if keeps_energy else work_since_start(t, rows.power)
+        scale = max(float(rows.kinetic.max()), float(np.ptp(rows.potential)), float(np.ptp(work)))
+        elements = element_energies(system, rows.values, trapezoidal(t))
+    return Balance(t, total - total[0], work, scale, keeps_energy, elements=elements)
 
 
 def work_since_start(t: np.ndarray, power: np.ndarray) -> np.ndarray:
@@ -96,7 +116,7 @@ def work_since_start(t: np.ndarray, power: np.ndarray) -> np.ndarray:
     return np.append(0.0, np.cumsum(gained))
 
 
-def balance_of_steps(rows: OutputRows, weights: np.ndarray, jumps: np.ndarray, keeps_energy: bool) -> Balance:
+def balance_of_steps(system: System, rows: OutputRows, weights: np.ndarray, jumps: np.ndarray) -> Balance:
     """Return the balance at the ends of the solver's steps, by a quadrature in each.
 
     `rows`: at the nodes of all steps, one after the other, the first and last node next to both ends of a step.
@@ -108,17 +128,46 @@ def balance_of_steps(rows: OutputRows, weights: np.ndarray, jumps: np.ndarray, k
     total = kinetic + potential
     between = np.where(jumps, 0.0, total[1:, 0] - total[:-1, -1])
     change = np.cumsum(total[:, -1] - total[:, 0]) + np.append(0.0, np.cumsum(between))
-    work = np.zeros(len(change)) if keeps_energy else np.cumsum(np.sum(weights * power, axis=1))
+    work = np.zeros(len(change)) if system.keeps_energy else np.cumsum(np.sum(weights * power, axis=1))
     scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(np.append(0.0, work))))
-    return Balance(rows.t.reshape(shape)[:, -1], change, work, scale, keeps_energy, within_steps=True)
+    elements = element_energies(system, rows.values, weights.ravel())
+    return Balance(rows.t.reshape(shape)[:, -1], change, work, scale, system.keeps_energy, True, elements)
+
+
+def element_energies(system: System, values: np.ndarray, weights: np.ndarray) -> dict[str, ElementEnergy]:
+    """Return the energies of all elements that store energy or do work.
+
+    `values`: output terms of shape (n, n_terms). `weights`: of shape (n,), of a quadrature over the time, s.
+    """
+    stores, works = (_columns(system, term) for term in ("potential", "power"))
+    change = values[-1, [*stores.values()]] - values[0, [*stores.values()]]
+    power = values[:, [*works.values()]]
+    net, both = weights @ power, weights @ np.abs(power)
+    stored, supplied = dict(zip(stores, change, strict=True)), dict(zip(works, 0.5 * (both + net), strict=True))
+    dissipated = dict(zip(works, 0.5 * (both - net), strict=True))
+    return {
+        name: ElementEnergy(*(float(part.get(name, 0.0)) for part in (stored, supplied, dissipated)))
+        for name in stores | works
+    }
+
+
+def trapezoidal(t: np.ndarray) -> np.ndarray:
+    """Return the weights of the trapezoidal rule at the times t, s."""
+    half = 0.5 * np.diff(t)
+    return np.append(half, 0.0) + np.append(0.0, half)
 
 
 def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
     """Return the potential energy of each element that has one, J, shape (n,)."""
-    at = 1 + TERM_SETS["output"].index("potential")
+    return {name: values[:, column] for name, column in _columns(system, "potential").items()}
+
+
+def _columns(system: System, term: str) -> dict[str, int]:
+    """Return the columns of an output term of one entry per element, by the names of the elements that have it."""
+    at = 1 + TERM_SETS["output"].index(term)
     return {
-        name: values[:, system.places["output"][g, at] + e]
+        name: int(system.places["output"][g, at]) + e
         for g, group in enumerate(system.groups)
-        if group.record.patterns.get("potential")
+        if group.record.patterns.get(term)
         for e, name in enumerate(group.names)
     }

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 
 from ..notes import Note
 from ..solve.trajectory import IN_DOUBT, History
 from .digits import KnownErrors
-from .energy_balance import Balance
+from .energy_balance import Balance, ElementEnergy
 from .error_bars import RESOLVED, ErrorBar, ErrorEstimate
 from .scales import MECHANICAL, ROUNDING, kind_of
 from .solution import Solution
@@ -161,6 +161,7 @@ def _statistics(solutions: Sequence[Solution]) -> dict[str, object]:
 def _balance(balances: Sequence[Balance]) -> Balance:
     """Return the balance over all runs; changes between them are not work."""
     change, work = (_one_after_the_other([getattr(b, name) for b in balances]) for name in ("change", "work"))
+    names = dict.fromkeys(name for b in balances for name in b.elements)
     return Balance(
         t=np.concatenate([b.t for b in balances]),
         change=change,
@@ -168,7 +169,12 @@ def _balance(balances: Sequence[Balance]) -> Balance:
         scale=max(b.scale for b in balances),
         keeps_energy=all(b.keeps_energy for b in balances),
         within_steps=all(b.resolved for b in balances),
+        elements={name: _sum_of_energies([b.elements[name] for b in balances if name in b.elements]) for name in names},
     )
+
+
+def _sum_of_energies(parts: Sequence[ElementEnergy]) -> ElementEnergy:
+    return ElementEnergy(*(sum(column) for column in zip(*map(astuple, parts), strict=True)))
 
 
 def _one_after_the_other(parts: Sequence[np.ndarray]) -> np.ndarray:

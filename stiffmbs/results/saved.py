@@ -19,7 +19,7 @@ from ..model.scene import Figure
 from ..notes import Note
 from ..reading.units.display import DisplayUnits
 from ..solve.trajectory import History, Outcome
-from .energy_balance import Balance
+from .energy_balance import Balance, ElementEnergy
 from .error_bars import ErrorBar, ErrorEstimate
 from .provenance import PROVENANCE, from_json
 from .saved_state import TURNS, reading
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .solution import Solution
 
 ABOUT, HISTORY, BALANCE = "run/about", "run/history/", "run/balance/"
+OF_BALANCE = tuple(part.name for part in fields(Balance) if part.name != "elements")
 TEXTS = ("notes", "not_unique", "presolve", "verification")
 
 
@@ -46,13 +47,14 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "estimate": solution.estimate and astuple(solution.estimate),
         "figure": solution.figure and dict(solution.figure),
         "display": dict(solution.display.chosen),
+        "element_energies": {name: astuple(energy) for name, energy in solution.balance.elements.items()},
     }
     return {
         ABOUT: np.array(json.dumps(about, default=lambda number: number.item())),
         **({PROVENANCE: np.array(solution.provenance.as_json())} if solution.provenance else {}),
         **{HISTORY + part.name: getattr(solution.history, part.name) for part in fields(History)},
         **{TURNS + name: values for name, values in solution.turns.items()},
-        **{BALANCE + part.name: np.asarray(getattr(solution.balance, part.name)) for part in fields(Balance)},
+        **{BALANCE + name: np.asarray(getattr(solution.balance, name)) for name in OF_BALANCE},
     }
 
 
@@ -77,7 +79,8 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
     about = json.loads(str(arrays[ABOUT]))
     channels = {name: array for name, array in arrays.items() if "/" not in name and name not in ("time", "not_unique")}
     message = Note.restored(about["message"], about["ended"]) if "ended" in about else about["message"]
-    balance = {part.name: arrays[name] for part in fields(Balance) if (name := BALANCE + part.name) in arrays}
+    balance = {name: arrays[BALANCE + name] for name in OF_BALANCE if BALANCE + name in arrays}
+    elements = {name: ElementEnergy(*energy) for name, energy in about.get("element_energies", {}).items()}
     texts: dict[str, Any] = {name: tuple(about[name]) for name in TEXTS}
     if "note_details" in about:  # files of earlier versions have the sentences alone
         texts["notes"] = tuple(map(Note.restored, about["notes"], about["note_details"]))
@@ -87,7 +90,7 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         errors={channel: ErrorBar(*bar) for channel, bar in about["errors"].items()},
         estimate=ErrorEstimate(*about["estimate"]) if about.get("estimate") else None,
         history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
-        balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),
+        balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}, elements=elements),
         figure=Figure(**about["figure"]) if about["figure"] else None,
         display=DisplayUnits(about.get("display", {})),
         turns={name.removeprefix(TURNS): array for name, array in arrays.items() if name.startswith(TURNS)},

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..compile.bodies import PLANE, SPACE
-from ..reading.names import owner_of
+from ..compile.bodies import SPACE
+from ..evaluation.loads import ZERO, elements_of, reactions_of
 from ..results.error_bars import ErrorBar
 from ..results.solution import Solution, channel_ranges
 
@@ -70,7 +70,6 @@ class Loads:
     """Choice of the loads of a summary."""
 
     most: int = 10  # number of elements that are listed by default, those of the largest loads
-    zero: float = 1e-11  # part of the largest force below which a force is shown as zero
 
 
 LOADS = Loads()
@@ -98,7 +97,7 @@ def force_rows(solution: Solution, most: int | None = None) -> list[list[str]]:
     in_space = components == SPACE.reactions
     every = elements_of(solution)
     loads = {element: tuple(_largest(ranges[f"{element}.{part}"]) for part in components) for element in every}
-    noise = LOADS.zero * max((max(load) for load in loads.values()), default=0.0)
+    noise = ZERO * max((max(load) for load in loads.values()), default=0.0)
     n_forces = 3 if in_space else 2
     by_load = sorted(every, key=lambda element: (max(loads[element][:n_forces]), max(loads[element])), reverse=True)
     shown = set(by_load[:most])
@@ -137,18 +136,6 @@ def request_lines(solution: Solution, most: int | None = None) -> list[str]:
     ]
     left = len(names) - len(lines)
     return [*lines, *([f"and {left} more (--all shows all)"] if left else [])]
-
-
-def elements_of(solution: Solution) -> list[str]:
-    """Return the elements that have a force and torque among the channels, in the order of the scene."""
-    own, last = [name for name in solution.channels if name not in solution.requested], reactions_of(solution)[-1]
-    return list(dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{last}")))
-
-
-def reactions_of(solution: Solution) -> tuple[str, ...]:
-    """Return the labels of forces and torques in a solution."""
-    in_space = any(name.endswith(".tz") for name in solution.channels if name not in solution.requested)
-    return (SPACE if in_space else PLANE).reactions
 
 
 def _largest(cell: Cell) -> float:

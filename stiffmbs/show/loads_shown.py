@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..evaluation.bearing_loads import DrivingAngle, driving_angle, in_body_axes
+from ..evaluation.loads import Load
 from ..model.scene import Scene
 from ..results.solution import Solution
 from ..results.verification_words import has_reruns
 from .curves import Curve, curve_chart, polar_chart, round_step, spark_line
-from .driving_angle import DrivingAngle, driving_angle, rotating_loads
-from .loads import Column, Load, LoadRow, load_rows
+from .loads import Column, LoadRow, load_rows
 
 TITLES = {"N": "Loads", "N m": "Torques"}
 MOST_SHOWN, MOST_CURVES = 20, 4
@@ -144,12 +145,13 @@ def _polar(scene: Scene, solution: Solution, loads: Sequence[Load], angle: Drivi
     """Return paths of the largest forces in the last revolution of a drive, in a mechanism in the plane."""
     if angle is None:
         return None
-    pairs = [
-        (load.element, found)
-        for load in loads
-        if len(found := list(rotating_loads(scene, solution, load, angle.rows))) == 2
+    planar = [load for load in loads if load.components.shape[1] == 2]
+    pairs = [(load.element, found) for load in planar if len(found := in_body_axes(scene, solution, load)) == 2]
+    paths = [
+        (element, body, vectors[angle.rows])
+        for element, found in pairs[:MOST_CURVES]
+        for body, vectors in found.items()
     ]
-    paths = [(element, body, vectors) for element, found in pairs[:MOST_CURVES] for body, vectors in found]
     largest = max((float(np.nanmax(np.hypot(*vectors.T))) for *_, vectors in paths), default=0.0)
     if not largest > 0:
         return None

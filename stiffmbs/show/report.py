@@ -16,6 +16,7 @@ import numpy as np
 from ..analyses.check import check
 from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
+from ..evaluation.loads import ZERO, loads, unloaded
 from ..model.scene import Figure, Scene
 from ..notes import Note
 from ..reading.units.quantity import LARGEST
@@ -34,14 +35,13 @@ from .drawing.draw import marks_of
 from .drawing.poses import Poses, poses_of
 from .figure import drawn
 from .finding import finding, note_rows
-from .force_table import LOADS, with_bar
+from .force_table import with_bar
 from .html import MOST_ROWS
-from .loads import loads_of
 from .loads_shown import MOST_CURVES, Chart, loads_shown
 from .origin import origin_section
 from .page.data import environment, page_data, page_file, page_parts
 from .page.modes import modes_data
-from .sections import Section, differences_section
+from .sections import Section, differences_section, energy_section
 from .style import COLORS, data_url, dress, new_sheet
 from .summary import solver_lines
 from .verdict import verdict
@@ -75,7 +75,7 @@ def report_page(
     """Return the page as HTML, with its figures; parameters and errors as for `write_report`."""
     template, sheet = (page_file(f"report.{end}") for end in ("html", "css"))
     report, judged, origin = check(scene), verdict(solution), solution.provenance or provenance_of(scene)
-    loads, unloaded = loads_of(solution)
+    carried = loads(solution)
     figures = relevant_figures(solution, scene.figure)
     charts = [chart for figure in figures if is_charted(figure) for chart in figure_charts(solution, figure)]
     sheets = [drawn(solution, figure) for figure in figures if not is_charted(figure)]
@@ -87,15 +87,15 @@ def report_page(
     chosen = scene.run.model_fields_set  # shown first
     settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)
-    parts = page_parts()
+    parts, energies = page_parts(), energy_section(solution)
     return environment().from_string(template).render(
         title=solution.name or "Model", origin=origin, origin_section=origin_section(origin, text), sheet=sheet,
-        solution=solution, verdict=judged, finding=finding(judged, solution, loads), check=report, settings=settings,
+        solution=solution, verdict=judged, finding=finding(judged, solution, carried), check=report, settings=settings,
         peaks=_peaks(solution), energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
         charts=charts, figures=[_embedded(sheet, points) for sheet in sheets], figure_title=figures[0].title if figures else "", own_figure=scene.figure is not None, version=version("stiffmbs"),
-        sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(figure, points) for figure in steps],
+        sections=_with_figures([*sections, *([energies] if energies else [])]), first=_with_figures(first), steps=[_embedded(figure, points) for figure in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
-        **loads_shown(scene, solution, loads), unloaded=unloaded, notes=note_rows(solution.notes), modes=lines, moving=moving, modes_moving=shapes,
+        **loads_shown(scene, solution, carried), unloaded=unloaded(solution, carried), notes=note_rows(solution.notes), modes=lines, moving=moving, modes_moving=shapes,
         verified=verification_outcome(solution.verification), **parts,
     )  # fmt: skip
 
@@ -141,10 +141,7 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
     sizes = scales(solution.channels, 1.0, solution.requested)
     shown = displayed(solution)
     for name, cell in channel_ranges(shown).items():
-        bar, noise = (
-            shown.errors.get(name, UNKNOWN),
-            LOADS.zero * sizes[name] * solution.display.of(solution.unit(name))[1],
-        )
+        bar, noise = (shown.errors.get(name, UNKNOWN), ZERO * sizes[name] * solution.display.of(solution.unit(name))[1])
         verified = name in solution.errors
         rows.append(
             {

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..elements.spatial.orientation import AXES
+from ..evaluation.loads import ZERO, loads
 from ..model.parts.definitions import shipped_part
 from ..reading.files.yaml_text import Content
 from ..results.displayed import displayed
@@ -16,7 +17,7 @@ from ..results.listings import Difference, differences
 from ..results.scales import ROUNDING
 from ..results.solution import Solution
 from .curves import Curve, curve_chart
-from .loads import Column, loads_of
+from .loads import Column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -87,6 +88,28 @@ def differences_section(solution: Solution, name: str, other: Solution, origin: 
     return Section(f"Differences from {name}", (head, *only, *lines), shown, drawings=tuple(charts))
 
 
+def energy_section(solution: Solution) -> Section | None:
+    """Return the energies that elements exchange with the mechanism, the largest first; None if none does work."""
+    sizes = {
+        name: max(abs(each.stored), each.supplied, each.dissipated) for name, each in solution.balance.elements.items()
+    }
+    largest = max(sizes.values(), default=0.0)
+    if solution.balance.keeps_energy or not largest > 0:
+        return None
+    column = Column.of("J", largest, solution.display)
+    rows = tuple(
+        (name, *(f"{value * column.factor:.4g}" for value in astuple(solution.balance.elements[name])))
+        for name in sorted(sizes, key=lambda each: -sizes[each])
+        if sizes[name] > ZERO * largest
+    )
+    heads = "element", *(f"{head}, {column.unit}" for head in ("stored", "supplied", "dissipated"))
+    words = (
+        "Stored: change of the potential energy. Supplied and dissipated: work of other forces while they drive the mechanism, "
+        "and while they resist it."
+    )
+    return Section("Energy of the elements", (words,), (Table(heads, rows),))
+
+
 def changed_values(own: Provenance | None, other: Provenance | None) -> Iterator[tuple[str, str, str]]:
     """Yield each value of two scenes that differs, by its path, with its two texts.
 
@@ -129,8 +152,8 @@ def _leaves(path: str, value: object) -> Iterator[tuple[str, str]]:
 
 def _changed_loads(solution: Solution, other: Solution) -> Iterator[tuple[str, ...]]:
     """Yield peaks of loads that differ between two runs, the largest first, in the unit of the largest."""
-    here = {(load.element, load.unit): load.peak for load in loads_of(solution)[0]}
-    there = {(load.element, load.unit): load.peak for load in loads_of(other)[0]}
+    here = {(load.element, load.unit): load.peak for load in loads(solution)}
+    there = {(load.element, load.unit): load.peak for load in loads(other)}
     for element, unit in {**here, **there}:
         a, b = here.get((element, unit), 0.0), there.get((element, unit), 0.0)
         if abs(a - b) > ROUNDING * max(a, b):

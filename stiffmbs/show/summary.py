@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..evaluation.loads import elements_of
 from ..results.digits import KnownErrors
 from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
@@ -19,7 +20,7 @@ from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
 from .escaped import console as escaping_console
-from .force_table import LOADS, NOT_UNIQUE, elements_of, force_rows, request_lines, rich_table
+from .force_table import LOADS, NOT_UNIQUE, force_rows, request_lines, rich_table
 from .plain import PlainConsole, boxed
 
 if TYPE_CHECKING:

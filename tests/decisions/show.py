@@ -11,7 +11,6 @@ from stiffmbs.notes import Note
 from stiffmbs.reading.units.display import SI_UNITS
 from stiffmbs.show import (
     curves,
-    driving_angle,
     figure,
     finding,
     flexible_body,
@@ -271,21 +270,6 @@ def most_loads():
         return reached(lambda: summary._print_loads(Record(display=SI_UNITS), None, str, False))
 
 
-def smallest_torque():
-    """Return the torque, in quarter octaves of the largest, up to which it is shown."""
-
-    def is_shown(torque):
-        channels = {
-            f"{name}.{part}": np.array([size])
-            for name, size in (("a", 1.0), ("b", torque))
-            for part in ("fx", "fy", "torque")
-        }
-        found = Record(channels=channels, requested={}, errors={}, not_unique=(), time=np.zeros(1), display=SI_UNITS)
-        return ("b", "N m") in [(load.element, load.unit) for load in loads.loads_of(found)[0]]
-
-    return count_while(is_shown, BELOW)
-
-
 def most_drawn():
     def is_drawn(count):
         with (
@@ -388,17 +372,6 @@ def fewest_digits():
     return count_while(is_in_question, range(100))
 
 
-def missing_part_of_a_revolution():
-    """Return the quarter octaves below a revolution up to which the rest of one is too much."""
-
-    def is_too_short(missing):
-        drive = Record(kind="drive", joint=Record(joint="pin"))
-        turned = Record(channels={"pin.angle": 2 * np.pi * np.array([0.0, 1.0 - missing])})
-        return driving_angle.driving_angle(Record(joints={"motor": drive}), turned) is None
-
-    return count_while(is_too_short, BELOW)
-
-
 def finest_bar():
     return float(loads.Column("N", 1.0).words(1.0, 0.0).partition(" \N{PLUS-MINUS SIGN} ")[2])
 
@@ -481,7 +454,7 @@ DECISIONS = {
     "show.drawing.picture:NARROWEST": narrowest_picture, "show.curves:MOST_STEPS": steps_of_an_axis,
     "show.curves:MOST_POINTS": points_of_a_curve, "show.curves:BOLD": bold_part,
     "show.curves:LEAST_SPAN": least_span, "show.curves:CHARACTER": width_of_a_label, "show.finding:LEAST_DIGITS": fewest_digits,
-    "show.loads:FINEST": finest_bar, "show.driving_angle:ROUNDED": missing_part_of_a_revolution,
+    "show.loads:FINEST": finest_bar,
     "show.loads_shown:MOST_SHOWN": lambda: rows_and_curves()[0],
     "show.loads_shown:MOST_CURVES": lambda: rows_and_curves()[1],
     "show.drawing.picture:MOST_NAMES": lambda: count_while(lambda count: written_names(count), range(1, 200)),
@@ -513,7 +486,6 @@ DECISIONS = {
         lambda value: "e" not in force_table.with_bar(value, 1e-3 * value), BELOW
     ),
     "show.force_table:Loads.most": most_loads,
-    "show.force_table:Loads.zero": smallest_torque,
     "show.html:MOST_ROWS": lambda: html._table(["a"], [["x"]] * 200).count("<td>x"),
     "show.html:MOST_DRAWN": most_drawn,
     "analyses.linearised.modes:ON_A_SCREEN": printed_modes,
@@ -544,7 +516,7 @@ EXPECTED = {
     "show.drawing.painted:FLOOR_DEPTH": -1000.0, "show.drawing.painted:SHADOW": 0.07, "show.drawing.painted:LONGEST_ARROW": 0.22,
     "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:HEIGHT": 6.0,
     "show.drawing.picture:NARROWEST": 3.4, "show.curves:MOST_STEPS": 5, "show.curves:MOST_POINTS": 801, "show.curves:BOLD": 11, "show.curves:LEAST_SPAN": 93, "show.curves:CHARACTER": 65,
-    "show.finding:LEAST_DIGITS": 2, "show.loads:FINEST": 1e-5, "show.driving_angle:ROUNDED": 80, "show.loads_shown:MOST_SHOWN": 20, "show.loads_shown:MOST_CURVES": 4,
+    "show.finding:LEAST_DIGITS": 2, "show.loads:FINEST": 1e-5, "show.loads_shown:MOST_SHOWN": 20, "show.loads_shown:MOST_CURVES": 4,
     "show.drawing.picture:MOST_NAMES": 60,
     "show.drawing.picture:MANY_NAMES": 6.495190528383289, "show.drawing.picture:SMALLEST": 4.5, "show.drawing.poses:FAR": 18,
     "show.drawing.solids:ALONG": 18, "show.drawing.solids:MOST_FACES": 23, "show.drawing.solids:ROUND": 24,
@@ -555,7 +527,7 @@ EXPECTED = {
     "show.drawing.symbols.shared:FAR_OFF": 27, "show.drawing.symbols.spatial:WIDTH": 0.62, "show.drawing.symbols.spatial:RIM_RADIUS": 0.56,
     "show.drawing.symbols.spatial:SPOKES": 5, "show.figure:SIZE": 13, "show.figure:MOST_PLOTS": 6, "show.flexible_body:MOST_FREQUENCIES": 13,
     "show.flexible_body:UNREPRESENTED": 27, "show.flexible_body:LARGE_CONDITION": 27, "show.force_table:PLENTY": 9, "show.force_table:LEAST_WITHOUT_EXPONENT": 40,
-    "show.force_table:Loads.most": 10, "show.force_table:Loads.zero": 144, "show.html:MOST_ROWS": 40, "show.html:MOST_DRAWN": 29,
+    "show.force_table:Loads.most": 10, "show.html:MOST_ROWS": 40, "show.html:MOST_DRAWN": 29,
     "analyses.linearised.modes:ON_A_SCREEN": 20, "analyses.linearised.modes_table:MOST_BODIES": 4, "analyses.linearised.modes_table:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,

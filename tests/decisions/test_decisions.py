@@ -22,7 +22,7 @@ MODULES = [
     for name in (
         "adams", "analyses", "cache", "cad", "commands", "comparison", "compiling", "dynamics", "elements", "equilibria", "error_estimate",
         "flexible_bodies", "linear.linear_analysis", "linear.linearised", "machine", "model", "presolve", "reading", "redundancy", "results", "run_checks",
-        "show", "studies", "verification", "solving.auto", "solving.error_control", "solving.event_search",
+        "show", "studies", "runs.evaluation", "runs.verification", "solving.auto", "solving.error_control", "solving.event_search",
         "solving.events", "solving.explicit_steps", "solving.linear_solvers", "solving.radau", "solving.real_time", "solving.sensitivities", "vehicles.handling",
         "vehicles.suspension",
     )

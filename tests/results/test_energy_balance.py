@@ -30,6 +30,8 @@ forces: {s: {type: torsion_spring, i: bar, j: ground, stiffness: -200}}
 run: {duration: 1.2 s}
 """
 
+WITHOUT_ELEMENTS = SimpleNamespace(keeps_energy=False, groups=())
+
 
 def sled(**spring):
     model = Model("Sled")
@@ -151,10 +153,10 @@ def test_work_that_steps_miss_is_told():
     """A run whose steps do not contain the force of a bump: its rows do."""
     rows = SimpleNamespace(
         t=np.array([0.0, 0.5, 1.0, 1.0, 1.5, 2.0]), kinetic=np.full(6, 2.0), potential=np.zeros(6),
-        power=np.array([0.0, 0.0, 0.0, 0.0, 3.0, 0.0]),
+        power=np.array([0.0, 0.0, 0.0, 0.0, 3.0, 0.0]), values=np.empty((6, 0)),
     )  # fmt: skip
     weights = np.array([[1.0, 4.0, 1.0], [1.0, 4.0, 1.0]]) / 6
-    found = balance_of_steps(rows, weights, np.zeros(1, dtype=bool), False)
+    found = balance_of_steps(WITHOUT_ELEMENTS, rows, weights, np.zeros(1, dtype=bool))
     assert found.work.tolist() == [0.0, 2.0] and found.imbalance == 2.0 and found.scale == 2.0
 
 
@@ -164,10 +166,47 @@ def test_what_a_prescribed_jump_of_velocities_changes_is_no_work():
         kinetic=np.array([1.0, 1, 1, 4, 4, 4]),
         potential=np.zeros(6),
         power=np.zeros(6),
+        values=np.empty((6, 0)),
     )
     weights = np.full((2, 3), 1 / 3)
-    assert balance_of_steps(rows, weights, np.ones(1, dtype=bool), False).imbalance == 0.0
-    assert balance_of_steps(rows, weights, np.zeros(1, dtype=bool), False).imbalance == 3.0
+    assert balance_of_steps(WITHOUT_ELEMENTS, rows, weights, np.ones(1, dtype=bool)).imbalance == 0.0
+    assert balance_of_steps(WITHOUT_ELEMENTS, rows, weights, np.zeros(1, dtype=bool)).imbalance == 3.0
+
+
+def test_the_energy_of_each_element_over_an_oscillation(tmp_path):
+    """A mass on a damped spring, pulled by a force that changes its sign: m x'' + c x' + k x = F cos(w t)."""
+    mass, damping, stiffness, force, rate, end = 2.0, 3.0, 50.0, 7.0, 4.0, 2.3
+    model = sled(damping=damping)
+    model.add("pull", AppliedForce(i="sled", force=(f"{force}*cos({rate}*t)", 0)))
+    found = stiffmbs.run(model, duration=end, points=2001, rtol=1e-9)
+
+    def rates(t, y):
+        x, v, _, _, _ = y
+        pull = force * np.cos(rate * t)
+        power = pull * v
+        return v, (pull - damping * v - stiffness * x) / mass, damping * v * v, max(power, 0.0), max(-power, 0.0)
+
+    x, _, lost, driven, held = solve_ivp(rates, (0, end), [0.3, 0, 0, 0, 0], rtol=1e-10, atol=1e-12).y[:, -1]
+    energies = found.balance.elements
+    assert energies["spring"].stored == pytest.approx(stiffness * (x**2 - 0.3**2) / 2, rel=1e-6)
+    assert energies["spring"].dissipated == pytest.approx(lost, rel=1e-5) and energies["spring"].supplied == 0.0
+    assert energies["pull"].supplied == pytest.approx(driven, rel=1e-4)
+    assert energies["pull"].dissipated == pytest.approx(held, rel=1e-4)
+    found.save(tmp_path / "run.npz")
+    assert stiffmbs.Solution.load(tmp_path / "run.npz").balance.elements == energies
+
+
+@pytest.mark.parametrize(
+    "example", ["andrews", "door", "governor", "vehicles/quarter_car", "spatial_slider_crank", "beams/cable"]
+)
+def test_energies_of_the_elements_add_up_to_the_balance(example):
+    found = stiffmbs.run(EXAMPLES / f"{example}.yaml", duration=0.05)
+    balance, energies = found.balance, found.balance.elements.values()
+    change = found["energy.potential"][-1] - found["energy.potential"][0]
+    assert sum(each.stored for each in energies) == pytest.approx(change, abs=1e-9 * balance.scale)
+    work = sum(each.supplied - each.dissipated for each in energies)
+    assert work == pytest.approx(balance.work[-1], abs=1e-3 * balance.scale)
+    assert all(each.supplied >= 0 and each.dissipated >= 0 for each in energies)
 
 
 def test_a_drive_that_stops_dead_breaks_no_balance():

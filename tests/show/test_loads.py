@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.evaluation.bearing_loads import driving_angle, in_body_axes
+from stiffmbs.evaluation.loads import Load, loads, unloaded
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.notes import Note, Severity
-from stiffmbs.show.driving_angle import driving_angle, rotating_loads
 from stiffmbs.show.finding import finding, note_rows
-from stiffmbs.show.loads import Column, Load, load_rows, loads_of
+from stiffmbs.show.loads import Column, load_rows
 from stiffmbs.show.sections import differences_section
 from stiffmbs.show.verdict import verdict
 
@@ -32,17 +33,18 @@ def load_with(values, bar=np.nan, unit="N"):
 def test_loads_are_magnitudes_with_their_instants():
     """At the bottom of its swing a bar lets its pin carry 5/2 of its weight, after a quarter of a swing."""
     solution = stiffmbs.verify(EXAMPLES / "bar_pendulum.yaml", duration=1.0)
-    (load,), without = loads_of(solution)
+    (load,) = loads(solution)
     known = [solution.errors[f"hinge.{part}"] for part in ("fx", "fy")]
     assert load.bar == pytest.approx(np.hypot(*(max(e.over_time, e.least, e.greatest) for e in known)))
     assert load.peak == pytest.approx(2.5 * 1.2 * 9.81, abs=max(load.bar, 1e-3))
     assert load.time[load.peak_row] == pytest.approx(solution.time[np.argmin(solution["bar.y"])], abs=2e-3)
-    assert (load.element, load.unit, load.unique, without) == ("hinge", "N", True, [])
+    assert (load.element, load.unit, load.unique, unloaded(solution, [load])) == ("hinge", "N", True, [])
 
 
 def test_loads_that_are_not_unique_say_so_and_stay():
-    loads, _ = loads_of(stiffmbs.run(EXAMPLES / "door.yaml", duration=0.1))
-    unique = {(load.element, load.unit): load.unique for load in loads}
+    unique = {
+        (load.element, load.unit): load.unique for load in loads(stiffmbs.run(EXAMPLES / "door.yaml", duration=0.1))
+    }
     hinges = [unique[f"{end}_hinge", unit] for end in ("upper", "lower") for unit in ("N", "N m")]
     assert not any(hinges) and unique["closer", "N m"] and ("closer", "N") not in unique
 
@@ -71,7 +73,7 @@ def test_torques_of_rounding_are_none():
         "run": {"duration": 0.5, "output": 0.01},
     }  # fmt: skip
     run = stiffmbs.run(read_scene(json.dumps(scene)))
-    assert [(load.element, load.unit) for load in loads_of(run)[0]] == [("hinge", "N")]
+    assert [(load.element, load.unit) for load in loads(run)] == [("hinge", "N")]
 
 
 BLOW = """
@@ -85,9 +87,9 @@ run: {duration: 1, output: 0.05}
 def test_a_blow_between_output_instants_is_a_load_and_has_its_remedy():
     """It is zero at all output instants; the run knows its peak from its steps."""
     solution = stiffmbs.run(read_scene(BLOW))
-    loads, without = loads_of(solution)
-    assert {load.element for load in loads} == {"d", "f"} and not without
-    further = " ".join(finding(verdict(solution), solution, loads).further)
+    found = loads(solution)
+    assert {load.element for load in found} == {"d", "f"} and not unloaded(solution, found)
+    further = " ".join(finding(verdict(solution), solution, found).further)
     assert "smaller output interval" in further and "rtol" not in further
 
 
@@ -97,9 +99,10 @@ def test_loads_without_values_have_no_peak():
 
 
 def test_the_largest_load_is_first_and_all_have_one_unit(crank_slider):
-    loads, without = loads_of(crank_slider[1])
-    forces = [load for load in loads if load.unit == "N"]
-    assert [load.peak for load in forces] == sorted((load.peak for load in forces), reverse=True) and not without
+    found = loads(crank_slider[1])
+    forces = [load for load in found if load.unit == "N"]
+    assert [load.peak for load in forces] == sorted((load.peak for load in forces), reverse=True)
+    assert not unloaded(crank_slider[1], found)
     column = Column.of("N", forces[0].peak)
     assert column.unit == "kN"
     rows = list(load_rows(forces, column, {"ground_pin": "revolute, crank on ground"}))
@@ -128,8 +131,8 @@ def test_loads_rotate_on_a_crank_and_stay_on_the_ground(crank_slider):
     """The thrust on the slider is constant: on the ground its direction stays, on the crank it goes around."""
     scene, solution = crank_slider
     angle = driving_angle(scene, solution)
-    load = next(load for load in loads_of(solution)[0] if load.element == "ground_pin")
-    on_crank, on_ground = dict(rotating_loads(scene, solution, load, angle.rows)).values()
+    load = next(load for load in loads(solution) if load.element == "ground_pin")
+    on_crank, on_ground = (vectors[angle.rows] for vectors in in_body_axes(scene, solution, load).values())
     assert np.hypot(*on_crank.T) == pytest.approx(np.hypot(*on_ground.T))
     assert np.ptp(np.arctan2(*on_ground.T[::-1])) < 1.0
     assert np.ptp(np.unwrap(np.arctan2(*on_crank.T[::-1]))) > 6.0
@@ -143,7 +146,7 @@ def test_loads_rotate_on_a_crank_and_stay_on_the_ground(crank_slider):
 def test_a_finding_is_reliable_only_with_known_digits_and_without_warnings(crank_slider, notes, digits, mark):
     solution = replace(crank_slider[1], notes=notes)
     judged = replace(verdict(solution), digits={} if digits is None else {"forces": digits})
-    found = finding(judged, solution, loads_of(solution)[0])
+    found = finding(judged, solution, loads(solution))
     assert found.mark.endswith(mark) and found.status == ("doubt" if mark == "To be checked" else "done")
     assert found.sentence.startswith("The largest force is 5.41") and "kN, in ground_pin at 0.06" in found.sentence
 
@@ -151,7 +154,7 @@ def test_a_finding_is_reliable_only_with_known_digits_and_without_warnings(crank
 def test_a_run_that_stops_says_so_before_all_else(crank_slider):
     solution = crank_slider[1]
     judged = replace(verdict(solution), status="stopped", headline="0 s to 1 s: singular pose")
-    found = finding(judged, solution, loads_of(solution)[0])
+    found = finding(judged, solution, loads(solution))
     assert found.mark.endswith("Stopped") and found.sentence == "0 s to 1 s: singular pose."
 
 

@@ -57,6 +57,12 @@ def page_of(tmp_path):
     return make
 
 
+def test_the_energies_of_dampers_stand_in_a_table(page_of):
+    page = page_of("door")
+    assert "Energy of the elements" in page.headings
+    assert "stored, J" in (text := "\n".join(page.texts)) and "24.66" in text
+
+
 @pytest.mark.long
 def test_a_page_holds_check_peaks_figures_and_settings(page_of):
     page = page_of("cart_pendulum", "--rtol", "1e-7")

@@ -1,0 +1,1 @@
+"""Evaluation of runs: loads, driving angles, cycles, and peaks between the output times."""

@@ -1,0 +1,1 @@
+"""Decisions on what follows a run: its verification, and its evaluation."""
