@@ -4,7 +4,7 @@ IDA interpolates each unknown separately.  If a step is long compared with the s
 errors in positions cause forces far beyond the actual ones.  Newton's iteration
     M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
 restores the equilibrium of stiff forces.  Small rotations since IDA's last setup also rotate stiff directions, so this
-iteration has its own factors, used as long as they converge.
+iteration has its own factors, used as long as they converge, with the cj of their matrix.
 
 The equations have other solutions: forces of inertia at high velocities also balance spurious forces.  Large spurious
 forces lead the iteration there.  So moves are bounded: by some tolerances, or by the change over the step if that is more.
@@ -123,12 +123,12 @@ def _in_tolerances(b, e):
 
 
 @compiled
-def _corrected(b, e):
-    """Apply one correction; return its size in units of the tolerance."""
+def _corrected(b, e, cj):
+    """Apply one correction, with y' by y times cj; return its size in units of the tolerance."""
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
     for k in range(e.n):
         b.y[k] -= b.correction[k]
-        b.yp[k] -= b.current * b.correction[k]
+        b.yp[k] -= cj * b.correction[k]
     return _in_tolerances(b, e)
 
 
@@ -158,7 +158,7 @@ def _remaining(b, s, e, t, once):
     before = 0.0
     size = 0.0
     for k in range(1 if once else POLISHING.most_corrections):
-        size = _corrected(b, e)
+        size = _corrected(b, e, b.factored)
         if k > 0:
             rate = size / before
         if (size if k > 0 and not rate < POLISHING.slowest else rate * size) <= b.enough:
@@ -178,7 +178,7 @@ def _corrected_by(b, s, e, t, parts, least):
     while parts >= least:
         if not _factored(b, s, e, t, parts * b.current):
             return False
-        _corrected(b, e)
+        _corrected(b, e, b.current)
         _look(b, s, e, t)
         parts /= CONSISTENCY.step_parts
     return True
@@ -259,12 +259,16 @@ def corrected(output_correction, state, equations, t, step):
         return True
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
-    if b.factored > 0.0 or _factored(b, s, e, t, b.current):
+    if b.factored > 0.0:
         if _remaining(b, s, e, t, False) == 0.0 and _is_near(b, e, t):
             return True
         _placed(b, t)
         _look(b, s, e, t)
-    if _left(b, s, e, t) <= 1.0 or _converged(b, s, e, t):
+    if _converged(b, s, e, t):
+        return True
+    _placed(b, t)
+    _look(b, s, e, t)
+    if _left(b, s, e, t) <= 1.0:
         return True
     count_failure(b, t)
     corrects = _without_spurious_forces(b, s, e, t)
@@ -320,7 +324,7 @@ def solved_across_kinks(output_correction, state, equations, t, cj, total, enoug
             _look(b, s, e, t)
             if not _factored(b, s, e, t, cj):
                 break
-            if _corrected(b, e) <= enough:
+            if _corrected(b, e, cj) <= enough:
                 converges = True
                 break
     _take_total(b, e, t, total)
