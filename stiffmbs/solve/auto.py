@@ -204,8 +204,8 @@ def _driver(name: str) -> dict[str, Any]:
 class ImplicitCheck:
     """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
-    `rate`: cost of implicit steps per second of the motion in this segment. `loss`: cost in excess of explicit steps,
-    since it was last lower.
+    `rate`: cost of implicit steps per second of the motion in this segment, or in its last interval if that is less, as a
+    segment may begin with small steps and end with a loss. `loss`: cost in excess of explicit steps, since it was last lower.
     """
 
     def __init__(self, run: _AutoRun, t: float) -> None:
@@ -223,7 +223,7 @@ class ImplicitCheck:
             return True  # an event between two checks
         counted = self._implicit.steps(t)
         taken, self._counted = counted.since(self._counted), counted
-        self.rate = counted.since(self._first).rate
+        self.rate = min(counted.since(self._first).rate, taken.rate)
         self.loss = max(self.loss + taken.cost - run.explicit_cost(taken.time, taken.restarts, taken.long), 0.0)
         gains = self._gains(Interval(t - 0.5 * taken.time, taken.rate))
         return self._wait() > 0.0 or gains

@@ -132,7 +132,7 @@ def test_cells():
     assert _cell({}, "gain", 1.0) == "\N{EN DASH}"
     assert _cell({"a": (-0.25, "")}, "a", 2.0) == "−0.5"
     assert [list(change(pair)) for pair in ([1.0, 1.0001], [0.0, 1.0], [1.0], [-2.0, -3.0])] == [
-        ["0\N{NO-BREAK SPACE}%"], ["\N{EN DASH}"], [], ["−50.0\N{NO-BREAK SPACE}%"],
+        ["0\N{NO-BREAK SPACE}%"], ["+1"], [], ["−50.0\N{NO-BREAK SPACE}%"],
     ]  # fmt: skip
 
 
@@ -145,3 +145,12 @@ def test_cells():
 )
 def test_the_steer_angle_is_told_for_a_travel_or_a_turn(angular, words):
     assert _steered(replace(found(angular))) == words
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [(2.0, 2.5, "+25.0\N{NO-BREAK SPACE}%"), (-2.0, -1.0, "+50.0\N{NO-BREAK SPACE}%"), (1e-9, -0.25, "\N{MINUS SIGN}0.25"), (0.0, 3.0, "+3"),
+     (0.0, 0.0, "0"), (2.0, 2.0, "0\N{NO-BREAK SPACE}%"), (np.nan, 1.0, "\N{EN DASH}")],
+)  # fmt: skip
+def test_changes_of_values_that_cross_zero_are_differences(before, after, words):
+    assert list(change([before, after])) == [words]

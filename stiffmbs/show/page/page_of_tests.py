@@ -68,13 +68,19 @@ def heads(variants: Sequence[str]) -> tuple[str, ...]:
 
 
 def change(values: Sequence[float]) -> Iterator[str]:
-    """Yield the change from the first of two values to the second, in percent; nothing for another number of values."""
+    """Yield the change from the first of two values to the second, in percent; nothing for another number of values.
+
+    Of values of different signs, it is their difference: a part of a value near zero has no meaning.
+    """
     if len(values) == 2:
         a, b = values
-        known = np.isfinite(a) and np.isfinite(b) and a != 0
-        part = 100 * (b - a) / abs(a) if known else 0.0
-        words = f"{part:+.1f}" if abs(part) >= 0.05 else "0"
-        yield f"{words.replace('-', MINUS)}\N{NO-BREAK SPACE}%" if known else MISSING
+        if not (np.isfinite(a) and np.isfinite(b)):
+            yield MISSING
+        elif a * b > 0:
+            part = 100 * (b - a) / abs(a)
+            yield f"{f'{part:+.1f}' if abs(part) >= 0.05 else '0'}\N{NO-BREAK SPACE}%".replace("-", MINUS)
+        else:
+            yield (f"{b - a:+.3g}" if a != b else "0").replace("-", MINUS)
 
 
 def compared_lines(variants: Mapping[str, Sequence[tuple[str, str, str]]]) -> list[str]:

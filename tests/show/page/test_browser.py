@@ -342,6 +342,27 @@ def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
 
 
 @pytest.mark.long
+def test_a_page_of_kinematics_and_compliance_fits_its_screen(tab, tmp_path):
+    """On a phone units stand below the names, so that no table is wider than the page."""
+    path = tmp_path / "page.html"
+    result = CliRunner().invoke(main, ["kc", str(EXAMPLES / "car.yaml"), "-o", str(path)])
+    assert result.exit_code == 0, result.output
+    try:
+        for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
+            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+            tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+            tab.do("Page.navigate", url=f"file://{path}")
+            tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
+            wider = "[...document.querySelectorAll('.wide')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
+            assert tab.run(wider) == 0
+            assert tab.run("document.documentElement.scrollWidth") <= width
+            assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+        tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+@pytest.mark.long
 def test_a_page_of_a_study_fits_a_phone(tab, tmp_path):
     """Its table of cases scrolls by itself if it has many columns."""
     pytest.importorskip("xarray")
