@@ -204,8 +204,8 @@ def _driver(name: str) -> dict[str, Any]:
 class ImplicitCheck:
     """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
-    `rate`: cost of implicit steps per second of the motion in this segment, or in its last interval if that is less, as a
-    segment may begin with small steps and end with a loss. `loss`: cost in excess of explicit steps, since it was last lower.
+    `rate`: cost of implicit steps per second of the motion, the lesser of that in this segment and in its last interval. A segment
+    may begin with small steps, and end with a loss. `loss`: cost in excess of explicit steps, since it was last lower.
     """
 
     def __init__(self, run: _AutoRun, t: float) -> None:

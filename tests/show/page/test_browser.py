@@ -353,7 +353,9 @@ def test_a_page_of_kinematics_and_compliance_fits_its_screen(tab, tmp_path):
             tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
             tab.do("Page.navigate", url=f"file://{path}")
             tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
-            wider = "[...document.querySelectorAll('.wide')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
+            wider = (
+                "[...document.querySelectorAll('.wide')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
+            )
             assert tab.run(wider) == 0
             assert tab.run("document.documentElement.scrollWidth") <= width
             assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]

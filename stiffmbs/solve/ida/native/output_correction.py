@@ -4,7 +4,7 @@ IDA interpolates each unknown separately.  If a step is long compared with the s
 errors in positions cause forces far beyond the actual ones.  Newton's iteration
     M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
 restores the equilibrium of stiff forces.  Small rotations since IDA's last setup also rotate stiff directions, so this
-iteration has its own factors, used as long as they converge, with the cj of their matrix.
+iteration has its own factors.  They are used with the cj of their matrix as long as they converge.
 
 The equations have other solutions: forces of inertia at high velocities also balance spurious forces.  Large spurious
 forces lead the iteration there.  So moves are bounded: by some tolerances, or by the change over the step if that is more.
