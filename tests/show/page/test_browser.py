@@ -322,23 +322,29 @@ def test_a_printed_report_has_all_columns_and_charts_side_by_side(tab, opened):
         tab.do("Emulation.setEmulatedMedia", media="", features=[])
 
 
-@pytest.mark.long
-def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
-    """Two variants, light and dark: nothing is cut, broken or faint, and no labels cover each other."""
-    path = tmp_path / "page.html"
-    variants = {name: found(tests=("step_steer", "lane_change", "constant_speed")) for name in ("base", "softer")}
-    write_handling(path, variants, dict.fromkeys(variants), {})
+def on_screens(tab, path):
+    """Yield the widths of a desktop and a phone, light and dark, on which a page is open."""
     try:
         for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
             tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
             tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
             tab.do("Page.navigate", url=f"file://{path}")
             tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
-            assert tab.run("document.documentElement.scrollWidth") <= width
-            assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
+            yield width
     finally:
         tab.do("Emulation.clearDeviceMetricsOverride")
         tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+@pytest.mark.long
+def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
+    """Two variants, light and dark: nothing is cut, broken or faint, and no labels cover each other."""
+    path = tmp_path / "page.html"
+    variants = {name: found(tests=("step_steer", "lane_change", "constant_speed")) for name in ("base", "softer")}
+    write_handling(path, variants, dict.fromkeys(variants), {})
+    for width in on_screens(tab, path):
+        assert tab.run("document.documentElement.scrollWidth") <= width
+        assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
 
 
 @pytest.mark.long
@@ -347,21 +353,11 @@ def test_a_page_of_kinematics_and_compliance_fits_its_screen(tab, tmp_path):
     path = tmp_path / "page.html"
     result = CliRunner().invoke(main, ["kc", str(EXAMPLES / "car.yaml"), "-o", str(path)])
     assert result.exit_code == 0, result.output
-    try:
-        for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
-            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-            tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
-            tab.do("Page.navigate", url=f"file://{path}")
-            tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
-            wider = (
-                "[...document.querySelectorAll('.wide')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
-            )
-            assert tab.run(wider) == 0
-            assert tab.run("document.documentElement.scrollWidth") <= width
-            assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
-    finally:
-        tab.do("Emulation.clearDeviceMetricsOverride")
-        tab.do("Emulation.setEmulatedMedia", features=[])
+    wider = "[...document.querySelectorAll('.wide')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
+    for width in on_screens(tab, path):
+        assert tab.run(wider) == 0
+        assert tab.run("document.documentElement.scrollWidth") <= width
+        assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
 
 
 @pytest.mark.long
