@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...results.scales import ROUNDING
 from .scene_graph import Line, Solid
 
 ALONG = 0.9
@@ -153,12 +154,32 @@ def triangles(solid: Solid) -> np.ndarray:
         edges = np.roll(points, -1, axis=1) - points
         turns = np.cross(edges, np.roll(edges, -1, axis=1))
         normals = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1, keepdims=True)
-        convex = ((turns * normals).sum(axis=2) > 0).all(axis=1)
-        fan = [(0, k, k + 1) for k in range(1, length - 1)]
-        found.append(faces[convex][:, fan].reshape(-1, 3))
+        left = (turns * normals).sum(axis=2)
+        if length > 4 and length % 2 == 0:
+            convex = (left >= -ROUNDING * np.abs(left).max(axis=1, keepdims=True)).all(axis=1)
+            sizes = np.roll(np.linalg.norm(turns, axis=2), 1, axis=1)  # of the ears
+            at_odd = sizes[:, 1::2].sum(axis=1) > sizes[:, ::2].sum(axis=1)
+            found += [faces[convex & (at_odd == first)][:, _by_ears(length, first)].reshape(-1, 3) for first in (0, 1)]
+        else:
+            convex = (left > 0).all(axis=1)
+            fan = [(0, k, k + 1) for k in range(1, length - 1)]
+            found.append(faces[convex][:, fan].reshape(-1, 3))
         for face, corners in zip(faces[~convex], points[~convex], strict=True):
             found.append(face[_of_face(corners)])
     return np.concatenate(found)
+
+
+def _by_ears(length: int, first: int) -> list[tuple[int, int, int]]:
+    """Cut off every other corner of a convex face, from the first one on, and again of what is left.
+
+    On a face of an element of second order, whose corners are every other node, each triangle has nodes of one neighbourhood.
+    """
+    found, order = [], list(range(length))
+    while len(order) > 4 and len(order) % 2 == 0:
+        n = len(order)
+        found += [(order[k - 1], order[k], order[(k + 1) % n]) for k in range(first, n, 2)]
+        order = order[1 - first :: 2]
+    return found + [(order[0], order[k], order[k + 1]) for k in range(1, len(order) - 1)]
 
 
 def _of_face(points: np.ndarray) -> list[tuple[int, int, int]]:

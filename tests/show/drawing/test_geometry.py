@@ -57,6 +57,22 @@ def test_an_outline_with_a_notch_is_cut_into_triangles_of_its_area():
     assert areas.sum() == pytest.approx(2.5)
 
 
+@pytest.mark.parametrize("turned", [0, 1])
+@pytest.mark.parametrize("corners", [3, 4])
+def test_a_face_of_second_order_is_cut_at_the_middles_of_its_edges(corners, turned):
+    """The first node may be a corner or a middle: each triangle lies at one corner, or between the middles."""
+    angles = 2.0 * np.pi * np.arange(corners) / corners
+    ends = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    nodes = np.stack([ends, (ends + np.roll(ends, -1, axis=0)) / 2], axis=1).reshape(-1, 3)
+    nodes = np.roll(nodes, turned, axis=0)
+    found = triangles(Solid(nodes, (np.arange(2 * corners),)))
+    at_corners = [sum((k + turned) % 2 == 0 for k in triangle) for triangle in found]
+    assert sorted(at_corners) == [0] * (corners - 2) + [1] * corners
+    a, b, c = nodes[found].transpose(1, 0, 2)
+    areas = np.cross(b - a, c - a)[:, 2] / 2
+    assert (areas > 0).all() and areas.sum() == pytest.approx(corners / 2 * np.sin(2 * np.pi / corners))
+
+
 def test_a_model_written_as_a_scene_keeps_its_shapes():
     read = scene(SHAPES)
     model = Model()
