@@ -4,7 +4,8 @@ IDA interpolates each unknown separately.  If a step is long compared with the s
 errors in positions cause forces far beyond the actual ones.  Newton's iteration
     M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
 restores the equilibrium of stiff forces.  Small rotations since IDA's last setup also rotate stiff directions, so this
-iteration has its own factors.  They are used with the cj of their matrix as long as they converge.
+iteration has its own factors.  They are used with the cj of their matrix as long as they converge, in steps that are
+not longer: with the cj of a shorter step, forces of inertia would balance spurious forces.
 
 The equations have other solutions: forces of inertia at high velocities also balance spurious forces.  Large spurious
 forces lead the iteration there.  So moves are bounded: by some tolerances, or by the change over the step if that is more.
@@ -259,7 +260,7 @@ def corrected(output_correction, state, equations, t, step):
         return True
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
-    if b.factored > 0.0:
+    if 0.0 < b.factored <= b.current:
         if _remaining(b, s, e, t, False) == 0.0 and _is_near(b, e, t):
             return True
         _placed(b, t)
