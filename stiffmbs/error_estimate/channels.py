@@ -75,6 +75,7 @@ class _Nodes:
     """States of a run at the nodes of its estimate, their errors (dq, du, ds), and the values and errors of the channels.
 
     `neighbours`: mask of the intervals between nodes in which none was left out. `of_bdf`: True if they are ends of steps of bdf.
+    `own`: mask of the states with rates that belong to the mechanism; others have their values at the start.
     """
 
     t: np.ndarray
@@ -85,6 +86,7 @@ class _Nodes:
     errors: np.ndarray
     neighbours: np.ndarray
     of_bdf: bool
+    own: np.ndarray
 
     def interpolated(self, t: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
         """Return the errors of states at some times by those at the two nodes next to each, and at two more where steps are even."""
@@ -106,7 +108,7 @@ class _Nodes:
         `before`: node before each time. The interpolant of bdf has its order and only states of the past: it misses fast states,
         which follow slow ones, by more than their errors at the ends of steps. Distances are zero where no curve is known.
         """
-        found, states = np.zeros((len(t), self.of_states.shape[1])), system.with_rates
+        found, states = np.zeros((len(t), self.of_states.shape[1])), system.with_rates[self.own]
         if not self.of_bdf or not len(states) or len(self.t) < ESTIMATE.points:
             return found
         first, unknown = windows(self.t, before, before + 1, ESTIMATE.points)
@@ -114,7 +116,8 @@ class _Nodes:
         known = ~unknown & (self.pieces[rows[:, 0]] == self.pieces[rows[:, -1]])
         known &= (t > self.t[before]) & (t < self.t[before + 1])
         curve = self._through(self.q[:, states], t[known], rows[known])
-        found[known, -len(states) :] = q[np.ix_(known, states)] - curve
+        columns = found.shape[1] - len(self.own) + np.flatnonzero(self.own)
+        found[np.ix_(known, columns)] = q[np.ix_(known, states)] - curve
         return found
 
     def _through(self, values: np.ndarray, t: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -158,9 +161,10 @@ def channel_errors(
     at, without = (of.at(kept) for of in rows)
     of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
     errors, neighbours = differences(names, values, better), np.diff(np.flatnonzero(kept)) == 1
-    of_outputs: OfOutputs = _AtOutputs(
-        reports, _Nodes(at.t, at.q, at.u, of_states, values, errors, neighbours, found.of_bdf), channels
-    ).errors
+    with_rates = dynamics.system.with_rates
+    own = np.isin(with_rates, subsystem.part.trailing) if subsystem else np.ones(len(with_rates), dtype=bool)
+    nodes = _Nodes(at.t, at.q, at.u, of_states, values, errors, neighbours, found.of_bdf, own)
+    of_outputs: OfOutputs = _AtOutputs(reports, nodes, channels).errors
     if found.fast:
         system = subsystem.dynamics.system if subsystem else dynamics.system
         at_start = found.q[:1], found.u[:1]

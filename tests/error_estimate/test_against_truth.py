@@ -419,3 +419,24 @@ def test_fixed_steps_over_jumps_of_forces_are_not_estimated():
     """)
     found = stiffmbs.run(scene, solver="projected", scheme="euler_cromer", step=1e-3, errors=True)
     assert found.estimate.status == "none" and "does not locate breakpoints" in found.estimate.sentence
+
+
+def test_states_of_one_of_two_mechanisms_have_no_errors_by_the_other():
+    """The bars of a controller's states were their own sizes, as the second mechanism has them at their start."""
+    text = """
+gravity: [0, -9.81]
+bodies:
+  bar: {mass: 1, inertia: 0.1, position: [0.5, 0]}
+  other: {mass: 2, inertia: 0.1, position: [3, 0], velocity: [0.1, 2]}
+joints: {hinge: {type: revolute, i: {body: bar, point: [-0.5, 0]}, j: ground}}
+states: {control: {pid: {input: bar.x, setpoint: -0.2, kp: 10, ki: 5, kd: 2, filter: 0.05}}}
+forces: {motor: {type: torque, i: bar, torque: control}, push: {type: force, i: other, force: ['sin(3*t)', 0]}}
+run: {duration: 0.4, points: 41}
+"""
+    scene = stiffmbs.read_scene(text)
+    found = stiffmbs.run(scene, solver="bdf", rtol=1e-5, errors=True)
+    assert any("2 independent mechanisms" in words for words in found.presolve)
+    exact = stiffmbs.run(scene, solver="radau", rtol=1e-11, errors=False)
+    for channel in ("control.integral", "control.filtered", "control", "motor.torque", "hinge.fx"):
+        error = np.abs(found[channel] - exact[channel]).max()
+        assert found.errors[channel].over_time == pytest.approx(error, rel=0.2), channel
