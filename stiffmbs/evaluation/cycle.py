@@ -68,8 +68,10 @@ def cycle(solution: Solution, channel: str) -> Cycle | None:
     period = lag * float(even[1] - even[0])
     last = even[even >= even[-1] - period]
     now, before = np.interp(last, even, x), np.interp(last - period, even, x)
-    change = float(np.max(np.abs(now - before)) / np.ptp(np.concatenate([now, before])))
-    return Cycle(period, np.flatnonzero(t >= even[-1] - period), change)
+    size = float(np.ptp(np.concatenate([now, before])))
+    if not size > 0:  # constant at last
+        return None
+    return Cycle(period, np.flatnonzero(t >= even[-1] - period), float(np.max(np.abs(now - before))) / size)
 
 
 def _first_lag(x: np.ndarray) -> float | None:

@@ -11,7 +11,7 @@ run is repeated with rows at the nodes of a Gauss-Lobatto quadrature within each
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -96,7 +96,7 @@ def energy_balance(system: System, rows: OutputRows) -> Balance:
             return Balance(t, np.zeros(1), np.zeros(1), 0.0, keeps_energy)
         work = np.zeros_like(t) if keeps_energy else work_since_start(t, rows.power)
         scale = max(float(rows.kinetic.max()), float(np.ptp(rows.potential)), float(np.ptp(work)))
-        elements = element_energies(system, rows.values, trapezoidal(t))
+        elements = element_energies(system, rows.values, lambda power: float(work_since_start(t, power)[-1]))
     return Balance(t, total - total[0], work, scale, keeps_energy, elements=elements)
 
 
@@ -130,31 +130,28 @@ def balance_of_steps(system: System, rows: OutputRows, weights: np.ndarray, jump
     change = np.cumsum(total[:, -1] - total[:, 0]) + np.append(0.0, np.cumsum(between))
     work = np.zeros(len(change)) if system.keeps_energy else np.cumsum(np.sum(weights * power, axis=1))
     scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(np.append(0.0, work))))
-    elements = element_energies(system, rows.values, weights.ravel())
+    elements = element_energies(system, rows.values, lambda power: float(weights.ravel() @ power))
     return Balance(rows.t.reshape(shape)[:, -1], change, work, scale, system.keeps_energy, True, elements)
 
 
-def element_energies(system: System, values: np.ndarray, weights: np.ndarray) -> dict[str, ElementEnergy]:
+def element_energies(
+    system: System, values: np.ndarray, work_of: Callable[[np.ndarray], float]
+) -> dict[str, ElementEnergy]:
     """Return the energies of all elements that store energy or do work.
 
-    `values`: output terms of shape (n, n_terms). `weights`: of shape (n,), of a quadrature over the time, s.
+    `values`: output terms of shape (n, n_terms). `work_of`: integral over the run of a power of shape (n,), J.
     """
     stores, works = (_columns(system, term) for term in ("potential", "power"))
     change = values[-1, [*stores.values()]] - values[0, [*stores.values()]]
     power = values[:, [*works.values()]]
-    net, both = weights @ power, weights @ np.abs(power)
+    net, both = (np.array([work_of(each) for each in of.T]) for of in (power, np.abs(power)))
+    both = np.maximum(both, np.abs(net))  # the integral has an error where the power changes its sign
     stored, supplied = dict(zip(stores, change, strict=True)), dict(zip(works, 0.5 * (both + net), strict=True))
     dissipated = dict(zip(works, 0.5 * (both - net), strict=True))
     return {
         name: ElementEnergy(*(float(part.get(name, 0.0)) for part in (stored, supplied, dissipated)))
         for name in stores | works
     }
-
-
-def trapezoidal(t: np.ndarray) -> np.ndarray:
-    """Return the weights of the trapezoidal rule at the times t, s."""
-    half = 0.5 * np.diff(t)
-    return np.append(half, 0.0) + np.append(0.0, half)
 
 
 def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:

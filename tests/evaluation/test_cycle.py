@@ -41,6 +41,7 @@ def test_a_decaying_vibration_has_a_period_and_changes(run):
     "values",
     [
         np.zeros(500),
+        np.where(np.arange(500) < 200, np.sin(0.3 * np.arange(500)), 1.0),
         np.linspace(0, 30, 500),
         np.full(500, np.nan),
         np.random.default_rng(1).normal(size=500),
