@@ -141,30 +141,30 @@ def element_energies(
 
     `values`: output terms of shape (n, n_terms). `work_of`: integral over the run of a power of shape (n,), J.
     """
-    stores, works = (_columns(system, term) for term in ("potential", "power"))
-    change = values[-1, [*stores.values()]] - values[0, [*stores.values()]]
-    power = values[:, [*works.values()]]
+    (stores, stored), (works, power) = (_of_elements(system, values, term) for term in ("potential", "power"))
     net, both = (np.array([work_of(each) for each in of.T]) for of in (power, np.abs(power)))
     both = np.maximum(both, np.abs(net))  # the integral has an error where the power changes its sign
-    stored, supplied = dict(zip(stores, change, strict=True)), dict(zip(works, 0.5 * (both + net), strict=True))
-    dissipated = dict(zip(works, 0.5 * (both - net), strict=True))
-    return {
-        name: ElementEnergy(*(float(part.get(name, 0.0)) for part in (stored, supplied, dissipated)))
-        for name in stores | works
-    }
+    found = {name: np.zeros(3) for name in (*stores, *works)}
+    for name, change in zip(stores, stored[-1] - stored[0], strict=True):
+        found[name] += [change, 0.0, 0.0]  # the weight of a flexible body and the law of its modes have one name
+    for name, supplied, dissipated in zip(works, 0.5 * (both + net), 0.5 * (both - net), strict=True):
+        found[name] += [0.0, supplied, dissipated]
+    return {name: ElementEnergy(*map(float, each)) for name, each in found.items()}
 
 
 def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the potential energy of each element that has one, J, shape (n,)."""
-    return {name: values[:, column] for name, column in _columns(system, "potential").items()}
+    """Return the potential energy of each element that has one, J, shape (n,); of a flexible body that of its modes."""
+    names, energies = _of_elements(system, values, "potential")
+    return dict(zip(names, energies.T, strict=True))
 
 
-def _columns(system: System, term: str) -> dict[str, int]:
-    """Return the columns of an output term of one entry per element, by the names of the elements that have it."""
+def _of_elements(system: System, values: np.ndarray, term: str) -> tuple[list[str], np.ndarray]:
+    """Return the names of the elements that have an output term of one entry, and its values, shape (n, elements)."""
     at = 1 + TERM_SETS["output"].index(term)
-    return {
-        name: int(system.places["output"][g, at]) + e
+    columns = [
+        (name, int(system.places["output"][g, at]) + e)
         for g, group in enumerate(system.groups)
         if group.record.patterns.get(term)
         for e, name in enumerate(group.names)
-    }
+    ]
+    return [name for name, _ in columns], values[:, [column for _, column in columns]]

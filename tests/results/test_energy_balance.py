@@ -197,7 +197,16 @@ def test_the_energy_of_each_element_over_an_oscillation(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "example", ["andrews", "door", "governor", "vehicles/quarter_car", "spatial_slider_crank", "beams/cable"]
+    "example",
+    [
+        "andrews",
+        "door",
+        "governor",
+        "vehicles/quarter_car",
+        "spatial_slider_crank",
+        "beams/cable",
+        "flexible/robot_arm",
+    ],
 )
 def test_energies_of_the_elements_add_up_to_the_balance(example):
     found = stiffmbs.run(EXAMPLES / f"{example}.yaml", duration=0.05)
