@@ -9,9 +9,11 @@ import numpy as np
 from ..analyses.job import Runnable, data_of
 from ..compile.bodies import QUATERNION
 from ..compile.quaternions import CONJUGATE, rotated
+from ..elements.element import Element
 from ..elements.joints.drive import Drive
 from ..elements.turns import TURN
 from ..errors import InputError
+from ..model.scene import Scene
 from ..reading.marker import GROUND
 from ..results.solution import Solution
 from .loads import Load
@@ -67,8 +69,8 @@ def driving_angle(model: Runnable, solution: Solution) -> DrivingAngle | None:
     >>> pin = stiffmbs.loads(crank)[0]
     >>> over_the_angle = angle.sorted_degrees, pin.magnitude[angle.order]
     """
-    for element in data_of(model).joints.values():
-        joint = getattr(getattr(element, "joint", None), "joint", "")
+    for element in _elements(model).values():
+        joint = _joint_of(element)
         channel = f"{joint}.angle"
         if element.kind != Drive.kind or channel not in solution.channels:
             continue
@@ -102,22 +104,37 @@ def in_body_axes(model: Runnable, solution: Solution, load: Load) -> dict[str, n
     -------
     dict of str to ndarray
         The components of `load` by body, that of the first marker first. The load on the second one has the opposite sign.
+        A drive or friction in a joint acts on the bodies of that joint. A gear or an equation has no two bodies: the result
+        is empty.
 
     Raises
     ------
     InputError
         If the model has no such element.
     """
-    data = data_of(model)
-    element = {**data.joints, **data.forces}.get(load.element)
+    elements = _elements(model)
+    element = elements.get(load.element)
     if element is None:
         raise InputError(f"model: found no joint or force '{load.element}', expected the model of the solution")
+    element = elements.get(_joint_of(element), element)
     bodies = [getattr(getattr(element, end, None), "body", "") for end in ("i", "j")]
     return {
         body: _in_axes_of(body, solution, sign * load.components)
         for sign, body in zip((1.0, -1.0), bodies, strict=True)
         if body
     }
+
+
+def _elements(model: Runnable) -> dict[str, Element]:
+    """Return the joints and forces of a model, in all its stages."""
+    data = data_of(model)
+    stages = data.stage_scenes if isinstance(data, Scene) else ()
+    return {name: element for each in (data, *stages) for name, element in (*each.joints.items(), *each.forces.items())}
+
+
+def _joint_of(element: Element) -> str:
+    """Return the name of the joint in which an element acts, as a drive does; empty if there is none."""
+    return str(getattr(getattr(element, "joint", None), "joint", ""))
 
 
 def _in_axes_of(body: str, solution: Solution, components: np.ndarray) -> np.ndarray:
