@@ -30,7 +30,7 @@ class Cycle:
     period : float
         Duration, s.
     rows : ndarray of int
-        Output instants of the last cycle.
+        Output instants of the last cycle at which the value is known.
     change : float
         Largest difference from the cycle before, relative to the range of the channel in both: near zero in a steady state.
     """
@@ -71,7 +71,8 @@ def cycle(solution: Solution, channel: str) -> Cycle | None:
     size = float(np.ptp(np.concatenate([now, before])))
     if not size > 0:  # constant at last
         return None
-    return Cycle(period, np.flatnonzero(t >= even[-1] - period), float(np.max(np.abs(now - before))) / size)
+    rows = np.flatnonzero(known & (t >= even[-1] - period))
+    return Cycle(period, rows, float(np.max(np.abs(now - before))) / size)
 
 
 def _first_lag(x: np.ndarray) -> float | None:

@@ -32,7 +32,7 @@ class Peak:
     Attributes
     ----------
     least, greatest : float
-        In the unit of the channel.
+        In the unit of the channel; NaN if no value is known.
     t_least, t_greatest : float
         When they occur, s.
     """
@@ -46,7 +46,7 @@ class Peak:
 @takes_settings
 def peaks(
     model: Runnable,
-    channels: Sequence[str] = (),
+    channels: str | Sequence[str] = (),
     settings: RunSettings | None = None,
     start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
@@ -60,7 +60,7 @@ def peaks(
     ----------
     model : Model, Scene, str or Path
         A model, a scene, or the file of a scene.
-    channels : sequence of str, optional
+    channels : str or sequence of str, optional
         Names of channels; by default the requests of the model.
     settings : RunSettings, optional
         Settings of the run; by default those of the scene.
@@ -93,7 +93,7 @@ def peaks(
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, **changes))
     job = prepare(data, settings, start_from, **changes)
     first = _solved(job)
-    names = list(channels or data.requests)
+    names = [channels] if isinstance(channels, str) else list(channels or data.requests)
     if not names:
         raise InputError("peaks: found no channels and no requests, expected names of channels such as 'hinge.fy'")
     for name in names:
@@ -116,7 +116,7 @@ def _around_extremes(reported: np.ndarray, run: Solution, names: Sequence[str]) 
     """Return output times, and times around the extreme values of channels in a run."""
     t, last = run.time, len(run.time) - 1
     found = reported
-    for k in sorted({int(find(run[name])) for name in names for find in (np.nanargmin, np.nanargmax)}):
+    for k in sorted({row for name in names for row in _extremes(run[name])}):
         begin, end = t[max(k - 1, 0)], t[min(k + 1, last)]
         within = np.linspace(begin, end, 2 * PARTS + 1)
         found = np.union1d(found, apart(np.append(within, t[k]), found))
@@ -126,5 +126,12 @@ def _around_extremes(reported: np.ndarray, run: Solution, names: Sequence[str]) 
 def _peak(runs: Sequence[Solution], name: str) -> Peak:
     t = np.concatenate([run.time for run in runs])
     values = np.concatenate([run[name] for run in runs])
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    low, high = _extremes(values)
     return Peak(float(values[low]), float(t[low]), float(values[high]), float(t[high]))
+
+
+def _extremes(values: np.ndarray) -> tuple[int, int]:
+    """Return where the least and the greatest value are; the first place if no value is known."""
+    if np.isnan(values).all():
+        return 0, 0
+    return int(np.nanargmin(values)), int(np.nanargmax(values))

@@ -64,6 +64,14 @@ def test_two_revolutions_are_enough():
     assert stiffmbs.cycle(solution, "shaft.fy").period == pytest.approx(0.02, rel=1e-3)
 
 
+def test_the_last_cycle_is_that_of_the_known_values(run):
+    time = np.linspace(0.0, 5.0, 501)
+    values = np.where((time < 4.0) & (time != time[350]), np.sin(2.0 * np.pi * time), np.nan)
+    found = stiffmbs.cycle(with_channel(run, time, values), "x")
+    assert np.isfinite(values[found.rows]).all()
+    assert time[found.rows[[0, -1]]] == pytest.approx([2.99, 3.99], abs=0.011)
+
+
 def test_an_unknown_channel_is_named(run):
     with pytest.raises(stiffmbs.InputError, match=r"hinge\.fq"):
         stiffmbs.cycle(run, "hinge.fq")

@@ -48,6 +48,22 @@ def test_the_ends_of_a_run_are_peaks_too():
     assert (found.greatest, found.least) == (solution["bar.y"][0], solution["bar.y"][-1])
 
 
+def test_a_request_without_values_has_no_peak_and_hinders_no_other_one():
+    text = """
+bodies: {b: {mass: 1, inertia: 1, velocity: [1, 0]}}
+requests: {never: sqrt(-1 - b.x), later: sqrt(b.x - 0.5)}
+run: {duration: 1, points: 11}
+"""
+    found = stiffmbs.peaks(stiffmbs.read_scene(text))
+    assert np.isnan([found["never"].least, found["never"].greatest]).all()
+    assert found["later"].greatest == pytest.approx(np.sqrt(0.5)) and found["later"].t_greatest == 1.0
+
+
+def test_one_channel_may_be_given_by_its_name():
+    pendulum = EXAMPLES / "bar_pendulum.yaml"
+    assert stiffmbs.peaks(pendulum, "bar.y", duration=0.1) == stiffmbs.peaks(pendulum, ["bar.y"], duration=0.1)
+
+
 def test_what_is_missing_is_named():
     with pytest.raises(stiffmbs.InputError, match="no channels and no requests"):
         stiffmbs.peaks(EXAMPLES / "simple_pendulum.yaml", duration=0.1)
