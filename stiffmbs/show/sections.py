@@ -89,18 +89,22 @@ def differences_section(solution: Solution, name: str, other: Solution, origin: 
 
 
 def energy_section(solution: Solution) -> Section | None:
-    """Return the energies that elements exchange with the mechanism, the largest first; None if none does work."""
+    """Return the energies that elements exchange with the mechanism, the largest first; None if none does work.
+
+    Energies that are rounding of those of the motion are not listed.
+    """
     sizes = {
         name: max(abs(each.stored), each.supplied, each.dissipated) for name, each in solution.balance.elements.items()
     }
     largest = max(sizes.values(), default=0.0)
-    if solution.balance.keeps_energy or not largest > 0:
+    least = ZERO * max(largest, solution.balance.scale)
+    if solution.balance.keeps_energy or not largest > least:
         return None
     column = Column.of("J", largest, solution.display)
     rows = tuple(
         (name, *(f"{value * column.factor:.4g}" for value in astuple(solution.balance.elements[name])))
         for name in sorted(sizes, key=lambda each: -sizes[each])
-        if sizes[name] > ZERO * largest
+        if sizes[name] > least
     )
     heads = "element", *(f"{head}, {column.unit}" for head in ("stored", "supplied", "dissipated"))
     words = (

@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 import pytest
 from click.testing import CliRunner
 
-from stiffmbs import read_scene
+from stiffmbs import load_scene, read_scene, run
 from stiffmbs.commands.main import main
 from stiffmbs.results.provenance import provenance_of
-from stiffmbs.show.sections import changed_values
+from stiffmbs.show.sections import changed_values, energy_section
 from stiffmbs.verification import verify
 
 from ..conftest import EXAMPLES
@@ -61,6 +61,12 @@ def test_the_energies_of_dampers_stand_in_a_table(page_of):
     page = page_of("door")
     assert "Energy of the elements" in page.headings
     assert "stored, J" in (text := "\n".join(page.texts)) and "24.66" in text
+
+
+def test_rounding_of_the_energy_of_the_motion_is_no_energy_of_an_element():
+    """A car that drives at constant speed: its tyre does some 1e-13 J of work, of 7e4 J."""
+    scene = load_scene(EXAMPLES / "vehicles" / "quarter_car.yaml")
+    assert energy_section(run(scene, duration=0.15)) is None
 
 
 @pytest.mark.long
