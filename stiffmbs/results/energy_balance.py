@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def energy_balance(system: System, rows: OutputRows) -> Balance:
             return Balance(t, np.zeros(1), np.zeros(1), 0.0, keeps_energy)
         work = np.zeros_like(t) if keeps_energy else work_since_start(t, rows.power)
         scale = max(float(rows.kinetic.max()), float(np.ptp(rows.potential)), float(np.ptp(work)))
-        elements = element_energies(system, rows.values, lambda power: float(work_since_start(t, power)[-1]))
+        elements = element_energies(system, rows.values, partial(_net_and_both, t))
     return Balance(t, total - total[0], work, scale, keeps_energy, elements=elements)
 
 
@@ -116,6 +117,15 @@ def work_since_start(t: np.ndarray, power: np.ndarray) -> np.ndarray:
     return np.append(0.0, np.cumsum(gained))
 
 
+def _net_and_both(t: np.ndarray, power: np.ndarray) -> tuple[float, float]:
+    """Return the integrals of a power and of its magnitude, J; where its sign changes it is a line."""
+    gained, begin, end = np.diff(work_since_start(t, power)), np.abs(power[:-1]), np.abs(power[1:])
+    changes = power[:-1] * power[1:] < 0
+    smaller = np.diff(t) * np.minimum(begin, end) ** 2 / np.where(changes, begin + end, 1.0)  # twice its area
+    both = np.abs(gained) + np.where(changes, smaller, 0.0)
+    return float(gained.sum()), float(both.sum())
+
+
 def balance_of_steps(system: System, rows: OutputRows, weights: np.ndarray, jumps: np.ndarray) -> Balance:
     """Return the balance at the ends of the solver's steps, by a quadrature in each.
 
@@ -130,19 +140,22 @@ def balance_of_steps(system: System, rows: OutputRows, weights: np.ndarray, jump
     change = np.cumsum(total[:, -1] - total[:, 0]) + np.append(0.0, np.cumsum(between))
     work = np.zeros(len(change)) if system.keeps_energy else np.cumsum(np.sum(weights * power, axis=1))
     scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(np.append(0.0, work))))
-    elements = element_energies(system, rows.values, lambda power: float(weights.ravel() @ power))
+    elements = element_energies(
+        system, rows.values, lambda power: (weights.ravel() @ power, weights.ravel() @ np.abs(power))
+    )
     return Balance(rows.t.reshape(shape)[:, -1], change, work, scale, system.keeps_energy, True, elements)
 
 
 def element_energies(
-    system: System, values: np.ndarray, work_of: Callable[[np.ndarray], float]
+    system: System, values: np.ndarray, work_of: Callable[[np.ndarray], tuple[float, float]]
 ) -> dict[str, ElementEnergy]:
     """Return the energies of all elements that store energy or do work.
 
-    `values`: output terms of shape (n, n_terms). `work_of`: integral over the run of a power of shape (n,), J.
+    `values`: output terms of shape (n, n_terms). `work_of`: integrals over the run of a power of shape
+    (n,), and of its magnitude, J.
     """
     (stores, stored), (works, power) = (_of_elements(system, values, term) for term in ("potential", "power"))
-    net, both = (np.array([work_of(each) for each in of.T]) for of in (power, np.abs(power)))
+    net, both = np.array([work_of(each) for each in power.T]).reshape(-1, 2).T
     both = np.maximum(both, np.abs(net))  # the integral has an error where the power changes its sign
     found = {name: np.zeros(3) for name in (*stores, *works)}
     for name, change in zip(stores, stored[-1] - stored[0], strict=True):

@@ -218,6 +218,19 @@ def test_energies_of_the_elements_add_up_to_the_balance(example):
     assert all(each.supplied >= 0 and each.dissipated >= 0 for each in energies)
 
 
+@pytest.mark.parametrize("points", [61, 64, 71])
+def test_a_motor_that_drives_and_brakes_in_turn(points):
+    """Inertia 0.1 with the angle sin(3 t): 0.45 J are supplied, and taken back, in each of six quarters of two turns."""
+    model = Model()
+    model.add("rotor", Body(mass=1, inertia=0.1))
+    model.add("pin", JOINTS["revolute"](i="rotor", j="ground"))
+    model.add("motor", JOINTS["drive"](joint="pin", position="sin(3*t)"))
+    found = stiffmbs.run(model, duration=2 * np.pi, points=points, rtol=1e-8).balance
+    assert not found.within_steps
+    energy = found.elements["motor"]
+    assert energy.supplied == pytest.approx(2.7, rel=5e-3) and energy.dissipated == pytest.approx(2.7, rel=5e-3)
+
+
 def test_a_drive_that_stops_dead_breaks_no_balance():
     model = sled(damping=2.0)
     model.add("motor", JOINTS["drive"](joint="rail", position="0.3*min(t, 1)"))
