@@ -35,7 +35,7 @@ def missing_part_of_a_revolution():
         drive = Record(kind="drive", joint=Record(joint="pin"))
         turned = Record(channels={"pin.angle": 2 * np.pi * np.array([0.0, 1.0 - missing])})
         with patch.object(bearing_loads, "data_of", lambda model: model):
-            return bearing_loads.driving_angle(Record(joints={"motor": drive}), turned) is None
+            return bearing_loads.driving_angle(Record(joints={"motor": drive}, forces={}), turned) is None
 
     return count_while(is_too_short, BELOW)
 
