@@ -43,7 +43,7 @@ def campbell_text(found: Campbell, orders: Sequence[float] | None = None) -> str
         ends = (_shown(value) for value in branch.frequencies[[0, -1]])
         way = direction(float(np.nanmedian(branch.whirl))) if not np.isnan(branch.whirl).all() else ""
         lines.append(
-            f"{k:>4}  {next(ends):>14}  {next(ends):>14}  {_least(branch, found.rounding):>14}  {way:<9}  {bodies_of(branch.participation)}".rstrip()
+            f"{k:>4}  {next(ends):>14}  {next(ends):>14}  {_least(branch, found):>14}  {way:<9}  {bodies_of(branch.participation)}".rstrip()
         )
     if len(found.branches) > ON_A_SCREEN:
         lines.append(f"and {len(found.branches) - ON_A_SCREEN} more modes")
@@ -67,10 +67,10 @@ def _shown(value: float) -> str:
     return "-" if np.isnan(value) else f"{value:.6g}"
 
 
-def _least(branch: Branch, rounding: float) -> str:
+def _least(branch: Branch, found: Campbell) -> str:
     """Return the least damping ratio, or ``unstable`` if a motion without oscillation grows."""
     known = branch.damping_ratios[~np.isnan(branch.damping_ratios)]
-    if np.any((branch.growth > rounding) & (branch.frequencies == 0.0)):
+    if np.any((branch.growth > found.rounding(np.abs(branch.growth))) & (branch.frequencies == 0.0)):
         return "unstable"
     return (f"{known.min():.4g}" if abs(known.min()) > GROWING else "0") if len(known) else "-"
 
@@ -113,9 +113,18 @@ def campbell_figure(found: Campbell, orders: Sequence[float] | None = None, high
             below.plot(found.values, np.where(here, branch.damping_ratios, np.nan), color=color)
             names.add(name)
     for order, slope in slopes.items():
-        end = min(last, top / slope)
-        above.plot([0.0, end], [0.0, slope * end], color="0.4", linestyle="--")
-        above.annotate(f"{order:g}x", (end, slope * end), (-3, 3), textcoords="offset points", color="0.4", ha="right")
+        for side in {-1.0, 1.0} & set(np.sign(found.values)):
+            end = min(float(np.max(side * found.values)), top / slope)
+            above.plot([0.0, side * end], [0.0, slope * end], color="0.4", linestyle="--")
+            place = "right" if side > 0.0 else "left"
+            above.annotate(
+                f"{order:g}x",
+                (side * end, slope * end),
+                (-3 * side, 3),
+                textcoords="offset points",
+                color="0.4",
+                ha=place,
+            )
         critical = found.critical(order)
         above.plot(
             [each.value for each in critical], [each.frequency for each in critical], "o", color="0.2", markersize=5

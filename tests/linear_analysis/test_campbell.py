@@ -240,3 +240,99 @@ def test_a_note_on_a_state_is_made_once():
 def test_a_single_value_is_refused(rigid):
     with pytest.raises(InputError, match="spin: found one value"):
         stiffmbs.campbell(rigid, "spin", [1.0])
+
+
+def test_equal_values_count_once(tmp_path):
+    path = tmp_path / "one.yaml"
+    path.write_text(ONE)
+    assert stiffmbs.campbell(path, "k", [100.0, 100.0, 200.0, 200.0]).values.tolist() == [100.0, 200.0]
+    with pytest.raises(InputError, match="k: found one value"):
+        stiffmbs.campbell(path, "k", [100.0, 100.0])
+
+
+UNDAMPED = """
+name: Two masses
+gravity: [0, 0]
+parameters: {k: 100 N/m}
+bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1, position: [3, 0]}}
+joints: {g: {type: prismatic, i: a, j: ground}, h: {type: prismatic, i: b, j: ground}}
+forces:
+  fa: {type: force, i: a, force: ["-k*a.x - (20 N/m)*(a.x - b.x + 3 m)", 0]}
+  fb: {type: force, i: b, force: ["-(50 N/m)*(b.x - 3 m) + (20 N/m)*(a.x - b.x + 3 m)", 0]}
+"""
+
+
+@pytest.mark.parametrize("count", [5, 9, 17, 26])
+def test_rounding_of_undamped_modes_is_no_limit_of_stability(tmp_path, count):
+    """The stiffness matrix [[k + 20, -20], [-20, 70]] is singular at k = -100/7; real parts above are rounding of either sign."""
+    path = tmp_path / "undamped.yaml"
+    path.write_text(UNDAMPED)
+    (limit,) = stiffmbs.campbell(path, "k", f"-200:200 N/m:{count}").limits()
+    assert limit.value == pytest.approx(-100 / 7, abs=2e-4 * 400 / (count - 1))
+    assert not limit.growing
+
+
+COLUMN = """
+name: Column under a follower force
+gravity: [0, 0]
+parameters: {P: 0 N, d: 0 N m s}
+bodies:
+  a: {mass: 2, inertia: 1e-9, position: [1, 0], markers: {s: {point: [-1, 0]}}}
+  b: {mass: 1, inertia: 1e-9, position: [2, 0], markers: {s: {point: [-1, 0]}}}
+joints: {p: {type: revolute, i: a.s, j: ground}, q: {type: revolute, i: b.s, j: a}}
+forces:
+  ta: {type: torque, i: a, torque: "(10 N m)*(b.angle - 2*a.angle) + d*(b.omega - 2*a.omega)"}
+  tb: {type: torque, i: b, torque: "-(10 N m)*(b.angle - a.angle) - d*(b.omega - a.omega)"}
+  P: {type: force, i: b, force: ["-P", 0], axes: body}
+"""
+
+
+@pytest.mark.parametrize("damping, expected", [("0", 10 * (3.5 - np.sqrt(2))), ("0.1", 10 * (41 / 28 + 0.5e-3))])
+@pytest.mark.parametrize("count", [4, 7, 13, 61])
+def test_flutter_of_a_column_is_found_for_any_number_of_values(tmp_path, damping, expected, count):
+    """Two modes meet at 20.858 N; at 49.142 N their real eigenvalues are paired anew, which is no limit.
+
+    H. Ziegler, Die Stabilitätskriterien der Elastomechanik, Ing.-Arch. 20 (1952) 49-56: (7/2 - sqrt 2) k/l without damping, and
+    (41/28 + d^2/(2 k m l^2)) k/l with it.
+    """
+    path = tmp_path / "column.yaml"
+    path.write_text(COLUMN)
+    (limit,) = stiffmbs.campbell(path, "P", f"0:60 N:{count}", changes=[("d", damping)]).limits()
+    assert limit.value == pytest.approx(expected, abs=1.5e-4 * 60 / (count - 1))
+    assert limit.growing
+
+
+def test_stiff_axial_modes_do_not_hide_slow_growth():
+    """A material damping of 0.02 ms drives the forward whirl of a shaft whose axial modes have 170 000 rad/s."""
+    changes = [("unbalance", "0"), ("c", "0.1 N s/m")]
+    found = stiffmbs.campbell("examples/beams/rotor.yaml", "spin", "100:300 rad/s:3", changes=changes)
+    (limit,) = found.limits()
+    growths = [
+        max(stiffmbs.campbell("examples/beams/rotor.yaml", "spin", [value, 600.0], changes=changes).branches[k].growth[0] for k in range(8))
+        for value in (limit.value - 1.0, limit.value + 1.0)
+    ]  # fmt: skip
+    assert growths[0] < 1e-6 < 1e-3 < growths[1]
+
+
+@pytest.mark.parametrize("values", ["0:28 rad/s:5", "-28:-3 rad/s:4", "0:28 rad/s:29"])
+def test_a_mode_that_begins_to_oscillate_meets_its_order(tmp_path, values):
+    """s^2 + 20 s + 2 w^2 = 0 oscillates above w = sqrt 50 rad/s, with w at 10 rad/s."""
+    path = tmp_path / "driven.yaml"
+    path.write_text("""
+name: Stiffness by speed
+gravity: [0, 0]
+parameters: {w: 1 rad/s}
+bodies: {a: {mass: 1, inertia: 1}}
+joints: {guide: {type: prismatic, i: a, j: ground}}
+forces: {f: {type: force, i: a, force: ["-(2 kg)*w^2*a.x - (20 N s/m)*a.vx", 0]}}
+""")
+    (critical,) = stiffmbs.campbell(path, "w", values).critical()
+    assert abs(critical.value) == pytest.approx(10.0, rel=1e-3)
+    assert critical.frequency == pytest.approx(10.0 / (2 * np.pi), rel=1e-3)
+
+
+@pytest.mark.parametrize("values, ends", [("-300:-100 rad/s:5", [-300.0]), ("-300:200 rad/s:6", [-300.0, 200.0])])
+def test_lines_of_orders_are_drawn_where_the_values_are(rigid, values, ends):
+    above, _ = stiffmbs.campbell(rigid, "spin", values).plot().axes
+    lines = [line.get_xdata() for line in above.lines if line.get_linestyle() == "--"]
+    assert sorted(float(line[-1]) for line in lines) == pytest.approx(ends)

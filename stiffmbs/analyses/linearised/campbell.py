@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Unpack
@@ -22,7 +23,7 @@ from ...reading.units.units import DIMENSIONS, named_unit
 from ...reading.variation import Range, Variation, numbers_of, variation
 from ..job import Runnable, data_of
 from ..load_scene import with_parameter
-from ..settled import GROWING
+from ..settled import GROWING, ROUNDED
 from .modes import Modes, modes
 
 COUNT = 51
@@ -47,6 +48,10 @@ class Found:
     modes: tuple[Mode, ...]
     whirl: tuple[float, ...]
     scale: np.ndarray  # shape (n_u,): as for `stiffmbs.linear_analysis.modes.natural_modes`
+
+
+Point = tuple[Found, int]
+"""Modes at a value, and the number of one of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,43 +150,99 @@ class Campbell(CampbellMethods):
         """
 
         def above_line(value: float, mode: Mode) -> float:
-            return abs(mode.eigenvalues[0].imag) - order * abs(value) if mode.frequency else np.nan
+            return abs(mode.eigenvalues[0].imag) - order * abs(value) if mode.frequency or value else np.nan
 
-        return tuple(self._crossings(above_line))
+        return _by_value(
+            self._crossing(number, {a[0].value: a, b[0].value: b}, above_line)[0]
+            for number, a, b in self._changes(above_line)
+        )
 
-    @property
-    def rounding(self) -> float:
-        """Real part, 1/s, up to which an eigenvalue counts as one without growth."""
+    @cached_property
+    def _largest(self) -> float:
         sizes = [abs(value) for found in self._found for mode in found.modes for value in mode.eigenvalues]
-        return GROWING * max(sizes, default=0.0)
+        return max(sizes, default=0.0)
+
+    def rounding(self, sizes: np.ndarray | float) -> np.ndarray | float:
+        """Return the real parts, 1/s, up to which eigenvalues of given magnitudes count as ones without growth."""
+        return GROWING * sizes + ROUNDED * self._largest
 
     def limits(self) -> tuple[Crossing, ...]:
-        """Return the limits of stability: where the largest real part of a mode's eigenvalues becomes positive, or no longer is."""
-        rounding = self.rounding
-        return tuple(self._crossings(lambda _, mode: _growth(mode) - rounding, lambda _, mode: _growth(mode)))
+        """Return the limits of stability: where the largest real part of a mode's eigenvalues becomes positive, or no longer is.
 
-    def _crossings(self, measure: Measure, exact: Measure | None = None) -> Iterator[Crossing]:
-        """Yield the zeros of a measure of the modes, in increasing order of the value.
-
-        `exact`: the same without an allowance for rounding, whose zeros are taken where its signs differ.
+        Real parts within rounding count as stable. The real part itself decides if it is larger at both ends. It jumps where
+        modes meet or their real eigenvalues are paired anew: the number of growing eigenvalues then decides.
         """
-        found = []
-        for number, branch in enumerate(self._numbers, start=1):
-            for k, (one, other) in enumerate(pairwise(branch)):
-                if one is None or other is None:
-                    continue
-                a, b = self._found[k], self._found[k + 1]
-                sides = measure(a.value, a.modes[one]), measure(b.value, b.modes[other])
-                if (sides[0] < 0.0) != (sides[1] < 0.0) and not np.isnan(sides).any():
-                    of_ends = (exact(a.value, a.modes[one]), exact(b.value, b.modes[other])) if exact else sides
-                    chosen = exact if exact and of_ends[0] * of_ends[1] < 0.0 else measure
-                    found.append(self._crossing(number, {a.value: (a, one), b.value: (b, other)}, chosen))
-        yield from sorted(found, key=lambda each: each.value)
 
-    def _crossing(self, number: int, known: dict[float, tuple[Found, int]], measure: Measure) -> Crossing:
-        """Return the zero of a measure between neighbouring values, by modes at values between them; `known`: those of the ends."""
+        def growth(_: float, mode: Mode) -> float:
+            return _fastest(mode).real
+
+        def beyond_rounding(_: float, mode: Mode) -> float:
+            fastest = _fastest(mode)
+            return float(fastest.real - self.rounding(abs(fastest)))
+
+        def is_rounding(point: Point | None) -> bool:
+            if point is None:
+                return True
+            fastest = _fastest(point[0].modes[point[1]])
+            return bool(abs(fastest.real) <= self.rounding(abs(fastest)))
+
+        def kept(points: Sequence[Point | None]) -> Sequence[Point | None]:
+            """Return the points without a single one that is a limit itself."""
+            near = [is_rounding(point) for point in points]
+            return [point for k, point in enumerate(points) if near[max(k - 1, 0) : k + 2] != [False, True, False]]
+
+        found = []
+        for number, a, b in self._changes(beyond_rounding, kept):
+            measure = beyond_rounding if is_rounding(a) or is_rounding(b) else growth
+            crossing, jumps = self._crossing(number, {a[0].value: a, b[0].value: b}, measure)
+            if not jumps:
+                found.append(crossing)
+            elif self._growing(a[0]) != self._growing(b[0]):
+                found.append(self._change(number, a[0], b[0]))
+        return _by_value(found)
+
+    def _growing(self, found: Found) -> int:
+        """Return the number of eigenvalues with growth."""
+        values = np.array([value for mode in found.modes for value in mode.eigenvalues])
+        return int(np.sum(values.real > self.rounding(np.abs(values))))
+
+    def _changes(
+        self, measure: Measure, kept: Callable[[Sequence[Point | None]], Sequence[Point | None]] = tuple
+    ) -> Iterator[tuple[int, Point, Point]]:
+        """Yield the number of a branch and neighbouring points of it between which a measure changes its sign.
+
+        `kept`: of the points of a branch, those that are neighbours.
+        """
+        for number, branch in enumerate(self._numbers, start=1):
+            points = [None if k is None else (one, k) for one, k in zip(self._found, branch, strict=True)]
+            for a, b in pairwise(kept(points)):
+                if a is None or b is None:
+                    continue
+                sides = [measure(one.value, one.modes[k]) for one, k in (a, b)]
+                if (sides[0] < 0.0) != (sides[1] < 0.0) and not np.isnan(sides).any():
+                    yield number, a, b
+
+    def _change(self, number: int, low: Found, high: Found) -> Crossing:
+        """Return the value between two others at which the number of growing eigenvalues changes, by bisection."""
+        precision, fewest = FINE * (high.value - low.value), self._growing(low)
+        growing = self._growing(high) > fewest
+        with suppress(AssemblyError, SolverError):
+            while high.value - low.value > precision:
+                middle = self._at((low.value + high.value) / 2)
+                low, high = (middle, high) if self._growing(middle) == fewest else (low, middle)
+        after = high if growing else low
+        rates = [(_fastest(mode).real, k) for k, mode in enumerate(after.modes)]
+        _, mode = min((each for each in rates if each[0] > self.rounding(each[0])), default=max(rates))
+        return Crossing((low.value + high.value) / 2, number, after.modes[mode].frequency, after.whirl[mode], growing)
+
+    def _crossing(self, number: int, known: dict[float, Point], measure: Measure) -> tuple[Crossing, bool]:
+        """Return the zero of a measure between neighbouring values, and True if the measure jumps there.
+
+        It is found by modes at values between them; `known`: those of the ends.
+        """
 
         def measured(value: float) -> float:
+            """Return the measure of the mode at a value."""
             if value not in known:
                 (found, mode), between = nearest(value), self._at(value)
                 before = found.modes[mode]
@@ -193,20 +254,29 @@ class Campbell(CampbellMethods):
                 raise SolverError(f"mode {number} does not oscillate at {self.parameter} = {value:g}")
             return result
 
-        def nearest(value: float) -> tuple[Found, int]:
+        def nearest(value: float) -> Point:
             return known[min(known, key=lambda each: abs(each - value))]
 
         low, high = sorted(known)
         sides = measured(low), measured(high)
         by_line = low + (high - low) * sides[0] / (sides[0] - sides[1])
+        jumps = False
         try:
             value = float(brentq(measured, low, high, xtol=FINE * (high - low)))
-            if abs(measured(value)) > np.sqrt(FINE) * max(map(abs, sides)):  # a jump to another mode
+            around = [
+                measured(min(side, key=lambda each: abs(each - value)))
+                for side in (
+                    [each for each in known if measured(each) < 0.0],
+                    [each for each in known if measured(each) >= 0.0],
+                )
+            ]
+            jumps = min(map(abs, around)) > np.sqrt(FINE) * max(map(abs, sides))  # to another mode
+            if jumps:
                 value = by_line
         except (AssemblyError, SolverError):  # no such mode between
             value = by_line
         found, mode = nearest(value)
-        return Crossing(value, number, found.modes[mode].frequency, found.whirl[mode], sides[1] > sides[0])
+        return Crossing(value, number, found.modes[mode].frequency, found.whirl[mode], sides[1] > sides[0]), jumps
 
     def __repr__(self) -> str:
         return f"<Campbell {self.name or 'model'}: {len(self.branches)} modes over {self.parameter}, {len(self.values)} values>"
@@ -238,9 +308,13 @@ class Campbell(CampbellMethods):
         return asked if asked is not None else (1.0,) if self.is_speed else ()
 
 
-def _growth(mode: Mode) -> float:
-    """Return the largest real part of the eigenvalues, 1/s."""
-    return max(each.real for each in mode.eigenvalues)
+def _by_value(crossings: Iterable[Crossing]) -> tuple[Crossing, ...]:
+    return tuple(sorted(crossings, key=lambda each: each.value))
+
+
+def _fastest(mode: Mode) -> complex:
+    """Return the eigenvalue with the largest real part, 1/s."""
+    return max(mode.eigenvalues, key=lambda each: each.real)
 
 
 def _listed(values: np.ndarray) -> list[float | None]:
@@ -302,7 +376,7 @@ def campbell(
     >>> [crossing.value for crossing in found.critical()]
     """
     varied = variation(parameter, values)
-    numbers = numbers_of(varied, COUNT - 1, COUNT)
+    numbers = tuple(dict.fromkeys(numbers_of(varied, COUNT - 1, COUNT)))
     if len(numbers) < 2:
         raise InputError(f"{parameter}: found one value, expected two or more")
     made = model if callable(model) else with_parameter(model, parameter, changes, varied.dimension)
@@ -388,7 +462,7 @@ def _branch(found: Sequence[Found], numbers: Sequence[int | None]) -> Branch:
     return Branch(
         column(lambda one, k: one.modes[k].eigenvalues[0], complex),
         column(lambda one, k: one.modes[k].damping_ratio, float),
-        column(lambda one, k: _growth(one.modes[k]), float),
+        column(lambda one, k: _fastest(one.modes[k]).real, float),
         column(lambda one, k: one.whirl[k], float),
         first[0].modes[first[1]].participation,
     )
