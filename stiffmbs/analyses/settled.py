@@ -209,8 +209,13 @@ def _growing(instant: Instant, moves: Moves) -> tuple[np.ndarray, Kink | None]:
     for side in [state] if kink is None else [state_matrix(side, scale) for side in kink.sides]:
         values, _, _ = eigen(side.matrix, side.n_poses, side.n_states)
         sizes = np.abs(values)
-        found.append(values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)])
+        found.append(values[values.real > growth_by_rounding(sizes, np.max(sizes, initial=0.0))])
     return np.concatenate(found), kink
+
+
+def growth_by_rounding(sizes: np.ndarray | float, largest: float) -> np.ndarray | float:
+    """Return the real parts, 1/s, that rounding may give eigenvalues of some magnitudes, the largest of all given too."""
+    return GROWING * sizes + ROUNDED * largest
 
 
 def _is_conservative(dynamics: Dynamics, t: float) -> bool:

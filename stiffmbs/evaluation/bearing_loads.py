@@ -17,9 +17,7 @@ from ..model.scene import Scene
 from ..reading.marker import GROUND
 from ..results.solution import Solution
 from .loads import Load
-
-ROUNDED = 1e-6
-"""Part of a revolution that may be missing, for durations written with six digits."""
+from .parameters import EVALUATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +76,10 @@ def driving_angle(model: Runnable, solution: Solution) -> DrivingAngle | None:
         steps = np.diff(angle)
         if (
             np.isfinite(angle).all()
-            and abs(angle[-1] - angle[0]) >= TURN * (1 - ROUNDED)
+            and abs(angle[-1] - angle[0]) >= TURN * (1 - EVALUATION.missing_turn)
             and (np.all(steps >= 0) or np.all(steps <= 0))
         ):
-            rows = np.flatnonzero(np.abs(angle - angle[-1]) <= TURN * (1 + ROUNDED))
+            rows = np.flatnonzero(np.abs(angle - angle[-1]) <= TURN * (1 + EVALUATION.missing_turn))
             return DrivingAngle(joint, rows, np.degrees(angle[rows]) % 360.0)
     return None
 

@@ -14,11 +14,7 @@ import numpy as np
 
 from ..results.channels import named
 from ..results.solution import Solution
-
-ALIKE = 0.1
-"""Relative difference below which a lag is a period (the threshold of the reference)."""
-FINER = 4
-"""Samples in the mean interval of output instants: a period need not be a multiple of it."""
+from .parameters import EVALUATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +56,7 @@ def cycle(solution: Solution, channel: str) -> Cycle | None:
     known = np.isfinite(values)
     if not known.any() or not np.ptp(values[known]) > 0:
         return None
-    even = np.linspace(t[known][0], t[known][-1], FINER * len(t))
+    even = np.linspace(t[known][0], t[known][-1], EVALUATION.samples * len(t))
     x = np.interp(even, t[known], values[known])
     lag = _first_lag(x)
     if lag is None:
@@ -81,7 +77,7 @@ def _first_lag(x: np.ndarray) -> float | None:
     differences = _differences(x[::-1] - x.mean(), longest)
     lags = np.arange(1, longest + 1)
     relative = differences[1:] * lags / np.maximum(np.cumsum(differences[1:]), np.finfo(float).tiny)
-    below = np.flatnonzero(relative < ALIKE)
+    below = np.flatnonzero(relative < EVALUATION.alike)
     if not len(below):
         return None
     k = int(below[0])

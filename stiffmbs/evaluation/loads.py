@@ -13,11 +13,10 @@ from ..reading.units.display import SI_UNITS, DisplayUnits
 from ..results.digits import largest_bar
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution
+from .parameters import EVALUATION
 
 UNITS = {"f": "N", "t": "N m"}
 """Unit of the components of a reaction by their first letter: a force, a torque."""
-ZERO = 1e-11
-"""Part of the largest load below which a load is zero: rounding leaves as much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +124,7 @@ def loads(solution: Solution) -> tuple[Load, ...]:
         for kind, unit in UNITS.items()
         for element in elements
     ]
-    least = ZERO * max((max(load.peak, load.excess) for load in every), default=0.0)
+    least = EVALUATION.zero * max((max(load.peak, load.excess) for load in every), default=0.0)
     kept = [load for load in every if max(load.peak, load.excess) > least or not load.unique]
     return tuple(sorted(kept, key=lambda load: (load.unit != UNITS["f"], -load.peak)))
 

@@ -18,11 +18,7 @@ from ..results.channels import named
 from ..results.solution import Solution
 from ..solve.trajectory import Outcome
 from ..verification.missed_events import apart, more_instants
-
-ROUNDS = 2
-"""Number of times that the intervals around the least and the greatest value are divided."""
-PARTS = 16
-"""Parts of these intervals."""
+from .parameters import EVALUATION
 
 
 @dataclass(frozen=True)
@@ -100,7 +96,7 @@ def peaks(
         named(first.channels, name)
     features = job.dynamics.input_features(float(first.time[0]), float(first.time[-1]))
     runs = [first, _solved(job.varied(times=more_instants(first, features)))]
-    for _ in range(ROUNDS):
+    for _ in range(EVALUATION.rounds):
         runs.append(_solved(job.varied(times=_around_extremes(first.time, runs[-1], names))))
     return {name: _peak(runs, name) for name in names}
 
@@ -118,7 +114,7 @@ def _around_extremes(reported: np.ndarray, run: Solution, names: Sequence[str]) 
     found = reported
     for k in sorted({row for name in names for row in _extremes(run[name])}):
         begin, end = t[max(k - 1, 0)], t[min(k + 1, last)]
-        within = np.linspace(begin, end, 2 * PARTS + 1)
+        within = np.linspace(begin, end, 2 * EVALUATION.parts + 1)
         found = np.union1d(found, apart(np.append(within, t[k]), found))
     return found
 

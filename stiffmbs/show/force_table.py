@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..compile.bodies import SPACE
-from ..evaluation.loads import ZERO, elements_of, reactions_of
+from ..evaluation.loads import elements_of, reactions_of
+from ..evaluation.parameters import EVALUATION
 from ..results.error_bars import ErrorBar
 from ..results.solution import Solution, channel_ranges
 
@@ -97,7 +98,7 @@ def force_rows(solution: Solution, most: int | None = None) -> list[list[str]]:
     in_space = components == SPACE.reactions
     every = elements_of(solution)
     loads = {element: tuple(_largest(ranges[f"{element}.{part}"]) for part in components) for element in every}
-    noise = ZERO * max((max(load) for load in loads.values()), default=0.0)
+    noise = EVALUATION.zero * max((max(load) for load in loads.values()), default=0.0)
     n_forces = 3 if in_space else 2
     by_load = sorted(every, key=lambda element: (max(loads[element][:n_forces]), max(loads[element])), reverse=True)
     shown = set(by_load[:most])

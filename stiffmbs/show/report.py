@@ -16,7 +16,8 @@ import numpy as np
 from ..analyses.check import check
 from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
-from ..evaluation.loads import ZERO, loads, unloaded
+from ..evaluation.loads import loads, unloaded
+from ..evaluation.parameters import EVALUATION
 from ..model.scene import Figure, Scene
 from ..notes import Note
 from ..reading.units.quantity import LARGEST
@@ -141,7 +142,10 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
     sizes = scales(solution.channels, 1.0, solution.requested)
     shown = displayed(solution)
     for name, cell in channel_ranges(shown).items():
-        bar, noise = (shown.errors.get(name, UNKNOWN), ZERO * sizes[name] * solution.display.of(solution.unit(name))[1])
+        bar, noise = (
+            shown.errors.get(name, UNKNOWN),
+            EVALUATION.zero * sizes[name] * solution.display.of(solution.unit(name))[1],
+        )
         verified = name in solution.errors
         rows.append(
             {

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..elements.spatial.orientation import AXES
-from ..evaluation.loads import ZERO, loads
+from ..evaluation.loads import loads
+from ..evaluation.parameters import EVALUATION
 from ..model.parts.definitions import shipped_part
 from ..reading.files.yaml_text import Content
 from ..results.displayed import displayed
@@ -97,7 +98,7 @@ def energy_section(solution: Solution) -> Section | None:
         name: max(abs(each.stored), each.supplied, each.dissipated) for name, each in solution.balance.elements.items()
     }
     largest = max(sizes.values(), default=0.0)
-    least = ZERO * max(largest, solution.balance.scale)
+    least = EVALUATION.zero * max(largest, solution.balance.scale)
     if solution.balance.keeps_energy or not largest > least:
         return None
     column = Column.of("J", largest, solution.display)
@@ -111,7 +112,9 @@ def energy_section(solution: Solution) -> Section | None:
         "Stored: change of the potential energy. Supplied and dissipated: work of other forces while they drive the mechanism, "
         "and while they resist it."
     )
-    return Section("Energy of the elements", (words,), (Table(heads, rows),))
+    unresolved = "Supplied and dissipated follow from the power at the output times, which must resolve the motion."
+    sentences = (words,) if solution.balance.resolved else (words, unresolved)
+    return Section("Energy of the elements", sentences, (Table(heads, rows),))
 
 
 def changed_values(own: Provenance | None, other: Provenance | None) -> Iterator[tuple[str, str, str]]:

@@ -290,7 +290,7 @@ forces:
 @pytest.mark.parametrize("damping, expected", [("0", 10 * (3.5 - np.sqrt(2))), ("0.1", 10 * (41 / 28 + 0.5e-3))])
 @pytest.mark.parametrize("count", [4, 7, 13, 61])
 def test_flutter_of_a_column_is_found_for_any_number_of_values(tmp_path, damping, expected, count):
-    """Two modes meet at 20.858 N; at 49.142 N their real eigenvalues are paired anew, which is no limit.
+    """Two modes meet at 20.858 N; at 49.142 N their real eigenvalues form other pairs, which is no limit.
 
     H. Ziegler, Die Stabilitätskriterien der Elastomechanik, Ing.-Arch. 20 (1952) 49-56: (7/2 - sqrt 2) k/l without damping, and
     (41/28 + d^2/(2 k m l^2)) k/l with it.

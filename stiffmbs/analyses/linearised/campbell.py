@@ -23,7 +23,7 @@ from ...reading.units.units import DIMENSIONS, named_unit
 from ...reading.variation import Range, Variation, numbers_of, variation
 from ..job import Runnable, data_of
 from ..load_scene import with_parameter
-from ..settled import GROWING, ROUNDED
+from ..settled import growth_by_rounding
 from .modes import Modes, modes
 
 COUNT = 51
@@ -164,13 +164,13 @@ class Campbell(CampbellMethods):
 
     def rounding(self, sizes: np.ndarray | float) -> np.ndarray | float:
         """Return the real parts, 1/s, up to which eigenvalues of given magnitudes count as ones without growth."""
-        return GROWING * sizes + ROUNDED * self._largest
+        return growth_by_rounding(sizes, self._largest)
 
     def limits(self) -> tuple[Crossing, ...]:
         """Return the limits of stability: where the largest real part of a mode's eigenvalues becomes positive, or no longer is.
 
         Real parts within rounding count as stable. The real part itself decides if it is larger at both ends. It jumps where
-        modes meet or their real eigenvalues are paired anew: the number of growing eigenvalues then decides.
+        modes meet or their real eigenvalues form other pairs: the number of growing eigenvalues then decides.
         """
 
         def growth(_: float, mode: Mode) -> float:

@@ -101,14 +101,14 @@ def runs_of_a_search():
 
 
 DECISIONS = {
-    "evaluation.loads:ZERO": smallest_torque,
-    "evaluation.bearing_loads:ROUNDED": missing_part_of_a_revolution,
-    "evaluation.cycle:ALIKE": largest_change_of_a_cycle,
-    "evaluation.cycle:FINER": samples_of_an_interval,
-    "evaluation.peaks:PARTS": instants_around_a_peak,
-    "evaluation.peaks:ROUNDS": runs_of_a_search,
+    "evaluation.parameters:Evaluation.zero": smallest_torque,
+    "evaluation.parameters:Evaluation.missing_turn": missing_part_of_a_revolution,
+    "evaluation.parameters:Evaluation.alike": largest_change_of_a_cycle,
+    "evaluation.parameters:Evaluation.samples": samples_of_an_interval,
+    "evaluation.parameters:Evaluation.parts": instants_around_a_peak,
+    "evaluation.parameters:Evaluation.rounds": runs_of_a_search,
 }
 EXPECTED = {
-    "evaluation.loads:ZERO": 144, "evaluation.bearing_loads:ROUNDED": 80, "evaluation.cycle:ALIKE": 19, "evaluation.cycle:FINER": 4,
-    "evaluation.peaks:PARTS": 32, "evaluation.peaks:ROUNDS": 2,
+    "evaluation.parameters:Evaluation.zero": 144, "evaluation.parameters:Evaluation.missing_turn": 80, "evaluation.parameters:Evaluation.alike": 19, "evaluation.parameters:Evaluation.samples": 4,
+    "evaluation.parameters:Evaluation.parts": 32, "evaluation.parameters:Evaluation.rounds": 2,
 }  # fmt: skip

@@ -1,6 +1,7 @@
 """Pages in a real browser: they draw, play and scrub, by mouse and by keys, without an error or a request."""
 
 import io
+from itertools import product
 
 import numpy as np
 import pytest
@@ -325,7 +326,7 @@ def test_a_printed_report_has_all_columns_and_charts_side_by_side(tab, opened):
 def on_screens(tab, path):
     """Yield the widths of a desktop and a phone, light and dark, on which a page is open."""
     try:
-        for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
+        for width, theme in product((1400, 390), ("dark", "light")):
             tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
             tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
             tab.do("Page.navigate", url=f"file://{path}")
